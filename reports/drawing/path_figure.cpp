@@ -212,7 +212,9 @@ void draw_paths(Drawing& drawing, const PlotArea& area, const FigureInput& input
   const PathView view = view_of(input);
   const auto [right, up, side] = axes;
   const std::vector<LegendRow> rows = path_legend(input);
-  const auto place = [&](const TimedPose& timed) { return area.at(timed.pose.p(right), timed.pose.p(up)); };
+  const auto place = [&area, right = right, up = up](const TimedPose& timed) {
+    return area.at(timed.pose.p(right), timed.pose.p(up));
+  };
   const auto add = [&](std::vector<Mark> marks) {
     drawing.marks.insert(drawing.marks.end(), marks.begin(), marks.end());
   };

@@ -61,6 +61,7 @@ void add_noise(cv::Mat& canvas, double amplitude, const cv::Size& cell, RandomSe
     return Between{(pixel / cell_px) % nodes, (pixel / cell_px + 1) % nodes, smooth_step(fraction)};
   };
   std::vector<Between> across;
+  across.reserve(static_cast<std::size_t>(canvas.cols));
   for (int x = 0; x < canvas.cols; ++x) across.push_back(between(x, cell.width, columns));
   for (int y = 0; y < canvas.rows; ++y) {
     const Between down = between(y, cell.height, rows);
