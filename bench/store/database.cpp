@@ -136,6 +136,16 @@ void Database::execute(const std::string& sql) const {
   if (result != SQLITE_OK) fail(file_, connection_.get(), result);
 }
 
+void Database::execute_when_free(const std::string& sql) const {
+  constexpr int kWaitMs = 10;
+  int result = sqlite3_exec(connection_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  for (int ms = 0; (result & 0xff) == SQLITE_BUSY && ms < kBusyTimeoutMs; ms += kWaitMs) {
+    sqlite3_sleep(kWaitMs);
+    result = sqlite3_exec(connection_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  }
+  if (result != SQLITE_OK) fail(file_, connection_.get(), result);
+}
+
 std::int64_t Database::integer(std::string_view sql) const {
   Statement statement = prepare(sql);
   return statement.step() ? statement.integer(0) : 0;

@@ -52,6 +52,9 @@ class Database {
   [[nodiscard]] Statement prepare(std::string_view sql) const;
   /// Executes statements without results.
   void execute(const std::string& sql) const;
+  /// Executes a statement that needs the only connection, e.g. a change to a write-ahead log. SQLite does not
+  /// wait for that when two connections try it at once, so it is repeated for up to a minute.
+  void execute_when_free(const std::string& sql) const;
   /// First column of the first row.
   [[nodiscard]] std::int64_t integer(std::string_view sql) const;
 

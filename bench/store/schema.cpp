@@ -133,7 +133,7 @@ int schema_version() { return static_cast<int>(kSteps.size()); }
 
 void migrate(const Database& database, int version) {
   if (version_of(database) >= version) return;
-  database.execute("PRAGMA journal_mode = WAL");
+  database.execute_when_free("PRAGMA journal_mode = WAL");
   Transaction transaction(database);
   // Read again: another worker may have migrated the store while this one waited for the lock.
   for (std::int64_t step = version_of(database); step < version; ++step) {

@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdio>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/base/error.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -41,6 +45,29 @@ void acquire_and_die(const std::filesystem::path& file, const RunIdentity& ident
   int status = 0;
   waitpid(child, &status, 0);
   ASSERT_TRUE(WIFSIGNALED(status));
+}
+
+TEST(StoreWriter, ANewFileIsOpenedByManyAtOnce) {
+  const TemporaryFolder folder;
+  std::vector<pid_t> children(4);
+  for (pid_t& child : children) {
+    child = fork();
+    if (child != 0) continue;
+    for (int file = 0; file < 50; ++file) {
+      try {
+        StoreWriter(folder.path() / (std::to_string(file) + ".sqlite"));
+      } catch (const InputError& error) {
+        std::fputs(error.what(), stderr);
+        _exit(1);
+      }
+    }
+    _exit(0);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+  }
 }
 
 TEST(StoreWriter, WritesFilesAheadWhichFinishFinds) {
