@@ -42,6 +42,10 @@ void install_interrupt_handlers() {
 
 bool interrupt_requested() { return g_interrupted != 0; }
 
+void require_uninterrupted() {
+  if (interrupt_requested()) throw Interrupted{};
+}
+
 void block_interrupts() {
   const sigset_t signals = interrupt_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);

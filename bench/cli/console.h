@@ -15,6 +15,12 @@ void install_interrupt_handlers();
 /// True once a handler of `install_interrupt_handlers` was called.
 [[nodiscard]] bool interrupt_requested();
 
+/// Ends a command that has no result after an interruption: the program prints so and exits with 130.
+struct Interrupted {};
+
+/// @throws Interrupted after `interrupt_requested`
+void require_uninterrupted();
+
 /// Blocks SIGINT and SIGTERM in this thread and in threads created by it later.
 void block_interrupts();
 

@@ -210,11 +210,15 @@ TEST(SystemsRun, ExecutesTheProgramOfTheRepository) {
 
 TEST(CompareSystems, OfCommitsAreBuiltAndCompared) {
   const MadeUpProject& project = shared_project();
-  const auto compare = [&](std::size_t base, std::size_t head) {
+  const auto compare = [&](std::size_t base, std::size_t head, const ProgramOptions& options = {}) {
     return project.run({"compare", project.file("slam.toml@") + project.commit(base),
                         project.file("slam.toml@") + project.commit(head), "--plan",
-                        project.file("plan.toml"), "--pairs", "8", "--store", project.file("gate.sqlite")});
+                        project.file("plan.toml"), "--pairs", "8", "--store", project.file("gate.sqlite")},
+                       options);
   };
+  const ProgramResult interrupted = compare(6, 7, {.interrupt_after = "8 pairs of each"});
+  EXPECT_EQ(interrupted.exit_code, 130) << interrupted.out << interrupted.err;
+  EXPECT_NE(interrupted.err.find("run the same command again"), std::string::npos) << interrupted.err;
   const ProgramResult worse = compare(6, 7);
   EXPECT_EQ(worse.exit_code, 1) << worse.out << worse.err;
   EXPECT_NE(worse.out.find("| ate_rmse_m"), std::string::npos) << worse.out;

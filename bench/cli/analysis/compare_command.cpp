@@ -149,6 +149,7 @@ ExternalSystem system_at(const SystemLocation& location, const std::string& buil
   const SourceCommit commit = source.commit(location.commit);
   spdlog::info("build {} {}", commit.short_hash(), commit.subject);
   const SourceBuild build = source.build(commit);
+  require_uninterrupted();
   if (!build.failure.empty()) throw InputError(location.file + "@" + location.commit, build.failure);
   return built_system(std::move(system), commit, build);
 }
@@ -249,8 +250,7 @@ Command compare_command() {
           {{"BASE",
             "A store or exported store (.json), of which the newest build is used, STORE@COMMIT, a commit in "
             "--store, a program to execute, or the description of a system (FILE.toml, or FILE.toml@COMMIT, "
-            "which "
-            "is built)",
+            "which is built)",
             &arguments->base},
            {"HEAD", "As BASE", &arguments->head},
            {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},

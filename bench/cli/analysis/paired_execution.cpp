@@ -8,7 +8,6 @@
 #include "bench/cli/console.h"
 #include "bench/plan/execution/plan_runner.h"
 #include "bench/store/store.h"
-#include "core/base/error.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -31,8 +30,8 @@ ExecutedPairs execute_pairs(const PlanMatrix& matrix, const std::string& store, 
                         .stop_requested = interrupt_requested};
   {
     StoreWriter writer(store);
-    if (run_plan(matrix, writer, {}, hooks).interrupted)
-      throw InputError("compare", "interrupted; run the same command again to continue");
+    static_cast<void>(run_plan(matrix, writer, {}, hooks));
+    require_uninterrupted();
   }
   const Store executed(store);
   return {planned_runs(executed, matrix, builds.base), planned_runs(executed, matrix, builds.head)};

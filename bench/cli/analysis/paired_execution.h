@@ -25,7 +25,7 @@ struct ExecutedPairs {
 /// Executes the pairs that the store lacks, in the order of the matrix, and reads all of them.
 /// @param matrix of `paired_plan` or `paired_systems`
 /// @param store need not exist
-/// @throws InputError on interruption, and as `run_plan`
+/// @throws Interrupted, and as `run_plan`
 [[nodiscard]] ExecutedPairs execute_pairs(const PlanMatrix& matrix, const std::string& store,
                                           const BuildPair& builds);
 

@@ -3,9 +3,9 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -83,14 +83,23 @@ struct StoredOutcomes {
   std::size_t failed = 0;  ///< of these
 };
 
-StoredOutcomes stored_outcomes(const PlanMatrix& matrix, const fs::path& store) {
-  StoredOutcomes outcomes;
+using OutcomeOfRun = std::map<std::string, Outcome>;  ///< by the key of the run
+
+/// @return the outcomes of all runs; none if there is no store yet
+OutcomeOfRun read_outcomes(const fs::path& store) {
+  OutcomeOfRun outcomes;
   if (!fs::exists(store)) return outcomes;
-  const std::set<std::string> keys(matrix.keys.begin(), matrix.keys.end());
-  for (const StoredRun& run : Store(store).run_headers()) {
-    if (!keys.contains(run.key) || run.outcome == Outcome::kBadData) continue;
+  for (const StoredRun& run : Store(store).run_headers()) outcomes[run.key] = run.outcome;
+  return outcomes;
+}
+
+StoredOutcomes stored_outcomes(const PlanMatrix& matrix, const OutcomeOfRun& stored) {
+  StoredOutcomes outcomes;
+  for (const std::string& key : matrix.keys) {
+    const auto found = stored.find(key);
+    if (found == stored.end() || found->second == Outcome::kBadData) continue;
     ++outcomes.ended;
-    outcomes.failed += run.outcome == Outcome::kOk ? 0 : 1;
+    outcomes.failed += found->second == Outcome::kOk ? 0 : 1;
   }
   return outcomes;
 }
@@ -109,9 +118,10 @@ class HistoryRunner {
   }
 
   HistoryCounts run(const std::vector<SourceCommit>& commits) {
+    const OutcomeOfRun stored = read_outcomes(arguments_.store);
     std::vector<SourceCommit> missing;
     for (const SourceCommit& commit : commits) {
-      if (is_stored(commit)) {
+      if (is_stored(commit, stored)) {
         ++counts_.stored;
       } else {
         missing.push_back(commit);
@@ -133,9 +143,9 @@ class HistoryRunner {
 
  private:
   /// Whether all runs of a commit were executed before: it is not built then.
-  bool is_stored(const SourceCommit& commit) {
+  bool is_stored(const SourceCommit& commit, const OutcomeOfRun& stored) {
     const PlanMatrix matrix = system_.runs(commit, {});
-    const StoredOutcomes outcomes = stored_outcomes(matrix, arguments_.store);
+    const StoredOutcomes outcomes = stored_outcomes(matrix, stored);
     const bool is_complete = outcomes.ended >= matrix.runs.size();
     if (is_complete) counts_.failed_runs += outcomes.failed;
     return is_complete;
@@ -153,7 +163,7 @@ class HistoryRunner {
     const PlanReport report = execute_plan(matrix, arguments_.store, {.jobs = arguments_.jobs}, {});
     if (report.interrupted) return;
     ++counts_.executed;
-    counts_.failed_runs += stored_outcomes(matrix, arguments_.store).failed;
+    counts_.failed_runs += stored_outcomes(matrix, read_outcomes(arguments_.store)).failed;
   }
 
   const HistoryArguments& arguments_;

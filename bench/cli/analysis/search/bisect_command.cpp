@@ -92,7 +92,6 @@ class VersionComparer {
         fs::path(arguments_.out) / (base_commit.short_hash() + "-" + head_commit.short_hash() + ".sqlite");
     const ExecutedPairs executed = execute(source_.build(base_commit), source_.build(head_commit),
                                            {base_commit, head_commit}, {pairs, store.string()});
-    require_uninterrupted();
     return compare_runs(with_metric_only(executed.base, arguments_.metric),
                         with_metric_only(executed.head, arguments_.metric), CompareSource::kPrograms);
   }
@@ -119,10 +118,6 @@ class VersionComparer {
                              built_system(*external_, commits.head, head)};
     return execute_pairs(paired_systems(runs_, systems, count.pairs), count.store,
                          {system_build(systems.base, true), system_build(systems.head, false)});
-  }
-
-  static void require_uninterrupted() {
-    if (interrupt_requested()) throw InputError("bisect", "interrupted");
   }
 
   const BisectArguments& arguments_;
@@ -220,14 +215,8 @@ int search(VersionComparer& versions, const BisectArguments& arguments) {
 
 int bisect(const BisectArguments& arguments) {
   install_interrupt_handlers();
-  try {
-    VersionComparer versions(arguments);
-    return search(versions, arguments);
-  } catch (const InputError&) {
-    if (!interrupt_requested()) throw;
-    std::cout << "interrupted; run the same command again to continue\n";
-    return kExitInterrupted;
-  }
+  VersionComparer versions(arguments);
+  return search(versions, arguments);
 }
 
 }  // namespace
