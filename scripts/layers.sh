@@ -141,7 +141,7 @@ row bench/cli/run $execution core/calibration core/config core/geometry core/typ
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/mapping datasets/synthetic/sequence eval/io eval/metrics eval/trajectory bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/text reports/page
-row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan \
+row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan bench/run \
   bench/plan/execution bench/analysis bench/analysis/search \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
@@ -196,7 +196,7 @@ threads=(
   'bench/profile/meters/run_monitor\.(h|cpp)'
   'bench/record/run_environment\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'
-  'bench/cli/analysis/pose_files\.cpp'
+  'bench/cli/analysis/(eval_command|pose_files)\.cpp'
 )
 libraries+=("<(thread|future|execution)> ^($(IFS='|' && echo "${threads[*]}"))\$")
 

@@ -52,7 +52,7 @@ double median_interval_s(std::span<const Timestamp> stamps) {
   intervals.reserve(stamps.size());
   for (std::size_t i = 1; i < stamps.size(); ++i)
     intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
-  return percentile(intervals, 0.5).value_or(0.0);
+  return reordering_percentile(intervals, 0.5).value_or(0.0);
 }
 
 }  // namespace

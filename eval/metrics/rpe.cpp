@@ -169,7 +169,7 @@ double median_interval(std::span<const double> stamps) {
   std::vector<double> intervals;
   intervals.reserve(stamps.size());
   for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
-  return percentile(intervals, 0.5).value_or(0.0);
+  return reordering_percentile(intervals, 0.5).value_or(0.0);
 }
 
 double median_interval(MatchView matches) {
@@ -177,7 +177,7 @@ double median_interval(MatchView matches) {
   intervals.reserve(matches.size());
   for (std::size_t i = 1; i < matches.size(); ++i)
     intervals.push_back(seconds_between(matches.time(i - 1), matches.time(i)));
-  return percentile(intervals, 0.5).value_or(0.0);
+  return reordering_percentile(intervals, 0.5).value_or(0.0);
 }
 
 /// Length of a step between consecutive poses in a unit that is not the time.
@@ -298,12 +298,14 @@ std::vector<SegmentErrors> segment_errors(MatchView matches, const SegmentOption
       for (std::size_t k = 0; k < found.pairs.size(); ++k) found.pairs[k].from = static_cast<PoseIndex>(k);
     }
     errors = relative_errors(matches, found.pairs, true, std::move(errors));
+    const Statistics translation_m = *reordering_statistics(errors.translation_m);
+    static_assert(kPercentiles.front() == 75);
     segments.push_back({.length_m = length_m,
-                        .translation_m = *reordering_statistics(errors.translation_m),
+                        .translation_m = translation_m,
                         .rotation_deg = *reordering_statistics(errors.rotation_deg),
                         .yaw_deg = *reordering_statistics(errors.yaw_deg),
                         .translation_lower_quartile_m = *reordering_percentile(errors.translation_m, 0.25),
-                        .translation_upper_quartile_m = *reordering_percentile(errors.translation_m, 0.75),
+                        .translation_upper_quartile_m = translation_m.percentiles.front(),
                         .dropped = found.dropped});
   }
   return segments;

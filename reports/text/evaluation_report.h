@@ -25,6 +25,7 @@ struct EvaluatedRun {
   Trajectory est;
   eval::RowRepairs repairs = {};  ///< of the file of the estimate
   std::vector<eval::Evaluation> evaluations;
+  std::vector<std::string> warnings = {};  ///< conventions that the estimate seems to violate
   std::optional<eval::CovarianceScore> covariance = std::nullopt;  ///< of estimates that bring covariances
   std::optional<eval::HandEye> hand_eye = std::nullopt;            ///< applied to `est`
 };

@@ -2,6 +2,7 @@
 // `stillpoint eval`: evaluates trajectory files.
 #include <algorithm>
 #include <filesystem>
+#include <future>
 #include <iostream>
 #include <memory>
 #include <span>
@@ -16,6 +17,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
+#include "eval/compare/conventions.h"
 #include "eval/compare/hand_eye.h"
 #include "eval/compare/time_offset.h"
 #include "eval/protocols/protocol.h"
@@ -118,6 +120,17 @@ std::vector<eval::Evaluation> evaluate_by_default(const eval::EvaluationInput& i
   return evaluations;
 }
 
+/// Conventions that the estimate seems to violate, with --offset added to its stamps.
+std::vector<std::string> warnings_about(const EvalArguments& arguments, const Trajectory& gt,
+                                        const report::EvaluatedRun& run) {
+  std::vector<std::string> warnings;
+  for (eval::ConventionFinding& finding :
+       arguments.offset_s == 0.0 ? eval::find_convention_violations(gt, run.est)
+                                 : eval::find_convention_violations(gt, shifted_estimate(arguments, run)))
+    warnings.push_back(std::move(finding.message));
+  return warnings;
+}
+
 /// From --level, or from the result.json beside the trajectory of a run.
 std::optional<Eigen::Quaterniond> leveling_rotation(const EvalArguments& arguments, const std::string& path) {
   if (!arguments.level.empty()) {
@@ -149,7 +162,8 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
   std::vector<report::EvaluatedRun> runs;
   for (PoseFile& file : files.subspan(1)) {
     const std::string& path = file.path;
-    report::EvaluatedRun run{.name = arguments.labels.empty() ? display_name(path, arguments.files.estimates)
+    const std::string& given = arguments.files.estimates[runs.size()];  // may be the folder of a run
+    report::EvaluatedRun run{.name = arguments.labels.empty() ? display_name(given, arguments.files.estimates)
                                                               : arguments.labels[runs.size()],
                              .covariance = covariance_score_of(arguments, gt, file)};
     run.est = std::move(file.loaded.trajectory);
@@ -162,12 +176,15 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
     if (comparable) eval::require_overlap(gt, run.est, arguments.offset_s, path);
     options.q_level_w = leveling_rotation(arguments, path);
     const eval::EvaluationInput input{gt, run.est, options};
+    std::future<std::vector<std::string>> warnings =
+        std::async(std::launch::async, [&] { return warnings_about(arguments, gt, run); });
     for (const std::string& protocol : arguments.protocols) {
       for (eval::Evaluation& evaluation : evaluate_over_deltas(protocol, input, deltas))
         run.evaluations.push_back(std::move(evaluation));
     }
     if (arguments.protocols.empty()) run.evaluations = evaluate_by_default(input, run.name, deltas);
     if (comparable) require_matches(gt, run);
+    run.warnings = warnings.get();
     runs.push_back(std::move(run));
   }
   return runs;
@@ -221,10 +238,10 @@ int evaluate_files(const EvalArguments& arguments) {
 std::vector<Option> options_of(EvalArguments& a) {
   return {
       {"GT",
-       "Ground-truth trajectory: a file, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD for a chain of "
-       "transforms)",
+       "Ground truth: a file, a sequence folder or preset, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD "
+       "for a chain of transforms)",
        &a.files.ground_truth},
-      {"EST", "Estimated trajectories of the same body frame", &a.files.estimates},
+      {"EST", "Estimated trajectories of the same body frame: files, or folders of runs", &a.files.estimates},
       {"--protocol",
        "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
        "repeated",

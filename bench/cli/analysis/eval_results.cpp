@@ -16,7 +16,6 @@
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
 #include "eval/compare/common_support.h"
-#include "eval/compare/conventions.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
@@ -63,29 +62,17 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   return options;
 }
 
-bool has_failed(const report::EvaluatedRun& run) { return run.est.poses.size() < 2; }
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// The estimate with --offset added to its stamps.
 Trajectory shifted_estimate(const EvalArguments& arguments, const report::EvaluatedRun& run) {
   Trajectory shifted = run.est;
   for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, arguments.offset_s);
   return shifted;
 }
 
-std::vector<std::string> warnings_about(const EvalArguments& arguments, const Trajectory& gt,
-                                        const report::EvaluatedRun& run) {
-  std::vector<std::string> warnings;
-  const std::vector<eval::ConventionFinding> findings =
-      arguments.offset_s == 0.0 ? eval::find_convention_violations(gt, run.est)
-                                : eval::find_convention_violations(gt, shifted_estimate(arguments, run));
-  warnings.reserve(findings.size());
-  for (const eval::ConventionFinding& finding : findings) warnings.push_back(finding.message);
-  return warnings;
-}
+bool has_failed(const report::EvaluatedRun& run) { return run.est.poses.size() < 2; }
+
+namespace {
+
+using Json = nlohmann::ordered_json;
 
 template <class Enum>
 std::string_view name_of(Enum value) {
@@ -203,7 +190,7 @@ nlohmann::ordered_json evaluation_document(const EvalArguments& arguments,
     json["estimate"] = run.name;
     json["status"] = status_name(has_failed(run) ? Outcome::kLost : Outcome::kOk);
     json["rows"] = {{"ground_truth", rows_json(truth.repairs)}, {"estimate", rows_json(run.repairs)}};
-    json["warnings"] = warnings_about(arguments, gt, run);
+    json["warnings"] = run.warnings;
     for (const eval::Evaluation& evaluation : run.evaluations)
       json["evaluations"].push_back(report::evaluation_json(evaluation));
     if (run.hand_eye) json["hand_eye"] = report::hand_eye_json(*run.hand_eye);
@@ -252,8 +239,7 @@ void print_evaluations(const EvalArguments& arguments, const Trajectory& gt,
         spdlog::info("{}, {}: {}", run.name, evaluation.protocol, note);
       }
     }
-    for (const std::string& warning : warnings_about(arguments, gt, run))
-      spdlog::warn("{}: {}", run.name, warning);
+    for (const std::string& warning : run.warnings) spdlog::warn("{}: {}", run.name, warning);
   }
 }
 

@@ -57,6 +57,9 @@ inline constexpr const char* kHandEyeAlignment = "hand-eye";
 /// The options, with the first of `rpe_deltas`. Hand-eye calibration is followed by an SE(3) alignment.
 [[nodiscard]] eval::ProtocolOptions protocol_options(const EvalArguments& arguments);
 
+/// The estimate with --offset added to its stamps.
+[[nodiscard]] Trajectory shifted_estimate(const EvalArguments& arguments, const report::EvaluatedRun& run);
+
 /// With one pose, a run has failed: after alignment it has no error, whatever it is.
 [[nodiscard]] bool has_failed(const report::EvaluatedRun& run);
 

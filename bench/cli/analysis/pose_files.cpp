@@ -2,21 +2,28 @@
 #include "bench/cli/analysis/pose_files.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
+#include "bench/plan/plan_sequences.h"
+#include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "datasets/bags/bag_geometry.h"
 #include "eval/io/text_reader.h"
+#include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The format of --format for the files of a role: "nmea" for all, "gt=nmea" and "est=tum" for one.
 std::optional<eval::TrajectoryFormat> format_of(const PoseFilePaths& paths, FileRole role) {
@@ -32,11 +39,34 @@ std::optional<eval::TrajectoryFormat> format_of(const PoseFilePaths& paths, File
   return format;
 }
 
-PoseFile load(const PoseFilePaths& paths, const std::string& path, FileRole role) {
+/// Whether the path names a sequence, not poses: a preset, or a folder other than one of 7-Scenes.
+bool is_sequence(const fs::path& path) {
+  if (!fs::exists(path)) return !path.has_extension();
+  if (!fs::is_directory(path) || eval::is_bag(path)) return false;
+  return std::none_of(fs::directory_iterator(path), fs::directory_iterator(),
+                      [](const auto& entry) { return entry.path().string().ends_with(".pose.txt"); });
+}
+
+/// The ground truth of a sequence, as poses of its camera, which a run estimates.
+PoseFile truth_of_sequence(const std::string& name) {
+  const std::unique_ptr<datasets::SensorStream> stream =
+      find_sequence(resolve_sequence(name), {}, {}, {.when_loaded = true});
+  const datasets::GroundTruth& truth = stream->info().ground_truth;
+  if (truth.trajectory.poses.empty())
+    throw InputError(name, "is a sequence without ground truth; give a file of true poses");
+  return {.path = name,
+          .loaded = {.trajectory = eval::move_to_frame(truth.trajectory, truth.T_c_f.inverse(), "camera")}};
+}
+
+PoseFile load(const PoseFilePaths& paths, const std::string& named, FileRole role) {
+  const std::string of_run = (fs::path(named) / "trajectory.tum").string();
+  const std::string path = fs::exists(of_run) ? of_run : named;
   eval::TrajectorySource source{.path = path, .times = paths.times, .sequence = paths.sequence};
   source.format = format_of(paths, role);
-  const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
-  return {.path = path, .loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source)};
+  if (const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path))
+    return {.path = path, .loaded = datasets::read_bag_trajectory(*bag)};
+  if (role == FileRole::kTruth && !source.format && is_sequence(path)) return truth_of_sequence(path);
+  return {.path = path, .loaded = eval::read_trajectory(source)};
 }
 
 /// Whether the rows of a file have columns after the pose: most have none, and are not read twice.

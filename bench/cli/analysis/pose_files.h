@@ -15,8 +15,8 @@ namespace stillpoint::bench {
 
 /// Files as the user names them.
 struct PoseFilePaths {
-  std::string ground_truth;            ///< a file, or BAG:/TOPIC
-  std::vector<std::string> estimates;  ///< files, or BAG:/TOPIC
+  std::string ground_truth;            ///< a file, BAG:/TOPIC, sequence folder, preset or folder of a run
+  std::vector<std::string> estimates;  ///< files, BAG:/TOPIC or folders of runs
   std::vector<std::string> formats;    ///< "nmea" of all, "gt=nmea" and "est=tum" of one; else detected
   std::string times;                   ///< of a KITTI trajectory; empty without
   int sequence = 0;                    ///< in an OpenLORIS file; 0 for the only one

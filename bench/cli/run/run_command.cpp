@@ -281,6 +281,9 @@ void print_result(const RunResult& result, const fs::path& folder, const std::st
   std::cout << fmt::format("{} {}: {}, {} of {} frames, {}\n  {}\n", result.sequence, result.variant,
                            status_name(result.outcome), result.run.summary.frames, result.run.frames_planned,
                            score_line(result), (folder / "result.json").string());
+  if (!result.gt.poses.empty())
+    std::cout << fmt::format("  {} true poses; again: stillpoint eval {} {}\n", result.gt.poses.size(),
+                             sequence, folder.string());
   const std::vector<RigFinding> rig = rig_report(result.run.calibration);
   if (!rig.empty()) std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
   if (const std::vector<std::string> off = run_indicators(result); !off.empty())
