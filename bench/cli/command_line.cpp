@@ -15,6 +15,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "bench/cli/console.h"
 #include "bench/config/spelling.h"
 #include "bench/record/run_environment.h"
 #include "core/base/error.h"
@@ -79,7 +80,11 @@ std::vector<std::string> selected_names(std::span<const std::string> words,
     if (is_option(word) && command == nullptr) continue;
     if (is_option(word) || level->empty()) break;
     const Command* found = find(*level, word);
-    if (found == nullptr && command != nullptr && command->action) break;  // an argument
+    // An argument, unless it is more like a mistyped subcommand.
+    const bool may_be_argument =
+        command != nullptr && command->action &&
+        (std::filesystem::exists(word) || suggestion(word, names_of(*level)).empty());
+    if (found == nullptr && may_be_argument) break;
     if (found == nullptr) throw_unknown(word, fmt::format("{}", fmt::join(names, " ")), *level);
     names.push_back(word);
     command = found;
@@ -141,7 +146,8 @@ void add_option(CLI::App& app, const Option& option, bool optional) {
     if constexpr (std::is_same_v<decltype(target), bool*>) {
       added = app.add_flag(option.name, *target, option.help);
     } else {
-      added = app.add_option(option.name, *target, option.help);
+      const std::string argument = option.argument.empty() ? "" : option.argument + ",";
+      added = app.add_option(argument + option.name, *target, option.help);
     }
     if constexpr (std::is_same_v<decltype(target), int*> || std::is_same_v<decltype(target), double*>) {
       added->check([range = option.range](const std::string& value) { return range_problem(value, range); });
@@ -216,6 +222,13 @@ int print_error(const std::string& message, int exit_code) {
 
 }  // namespace
 
+Option store_option(std::string* store) {
+  return {.name = "--store",
+          .help = "Database of runs [build/bench/store.sqlite]",
+          .target = store,
+          .argument = "STORE"};
+}
+
 std::function<int()> parse_command_line(int argc, char** argv, const std::vector<Command>& commands) {
   for (int i = 1; i < argc; ++i) require_utf8("argument", argv[i]);
   CommandLine line{.words = without_help_word({argv + 1, argv + argc}), .names = {}};
@@ -244,6 +257,9 @@ int report_exception() {
   };
   try {
     throw;
+  } catch (const Interrupted&) {
+    std::cerr << "interrupted; run the same command again to continue\n";
+    return kExitInterrupted;
   } catch (const InputError& error) {
     return print_error(error.what(), kExitBadInput);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -34,7 +34,11 @@ struct Option {
   std::string hidden_alias = {};  ///< former name of a vector option; accepted, not listed by --help
   int values = 1;                 ///< > 1: number of values of a vector option, which is then not repeated
   bool may_be_omitted = false;    ///< of an argument
+  std::string argument = {};      ///< an option's name as an argument: STORE instead of --store STORE
 };
+
+/// The store that a command reads, as an argument or as an option.
+[[nodiscard]] Option store_option(std::string* store);
 
 /// A subcommand. `action` owns the option targets, usually through a captured shared_ptr to a struct.
 struct Command {
@@ -123,6 +127,7 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] Command export_command();     ///< `stillpoint data export`: write other layouts
 [[nodiscard]] Command device_command();     ///< `stillpoint device`: cores, temperatures, power rails
 [[nodiscard]] Command detect_command();     ///< `stillpoint detect`: record boxes of a detection network
+[[nodiscard]] Command version_command();    ///< `stillpoint version`: the build of the program
 [[nodiscard]] Command synth_command();      ///< `stillpoint data synth`: render a sequence
 
 /// The accepted values, e.g. "none, first_pose, yaw".

@@ -5,7 +5,8 @@
 namespace stillpoint::bench {
 
 std::vector<Command> all_commands() {
-  return {run_command(), eval_command(), config_command(), data_command(), device_command()};
+  return {run_command(),  eval_command(),   config_command(),
+          data_command(), device_command(), version_command()};
 }
 
 Command data_command() {

@@ -16,7 +16,7 @@ set(program_sources
   bench/cli/analysis/eval_cloud_command bench/cli/analysis/eval_figures bench/cli/analysis/eval_results bench/cli/analysis/find_protocol_command
   bench/cli/analysis/pose_files
   bench/cli/analysis/eval_openloris_command bench/cli/data/inspect_commands
-  bench/cli/run/config_command bench/cli/run/device_command bench/cli/run/run_command bench/cli/run/run_dumps bench/cli/run/sequence_playback
+  bench/cli/run/config_command bench/cli/run/device_command bench/cli/run/run_command bench/cli/run/run_dumps bench/cli/run/sequence_playback bench/cli/run/version_command
   bench/minimal/commands)
 # Full paths, which stillpoint_group requires.
 list(TRANSFORM more_sources REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.cpp")

@@ -539,7 +539,7 @@ int sweep(const StatsArguments& arguments) {
 Command subcommand(Command command, const std::shared_ptr<StatsArguments>& arguments,
                    int (*action)(const StatsArguments&)) {
   command.options.insert(command.options.begin(),
-                         {{"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
+                         {store_option(&arguments->store),
                           {"--plan", "Only the runs of this plan", &arguments->plan},
                           {"--build", "Build, a prefix of one, or \"all\" [the newest]", &arguments->build},
                           {"--csv", "CSV instead of Markdown", &arguments->csv}});
@@ -555,44 +555,46 @@ Command stats_command() {
   const Option metric{"--metric", "Metric to evaluate [" + arguments->metric + "]", &arguments->metric};
   const Option base{"--base", "Variant that the others are compared with [ablation_base of the plan]",
                     &arguments->base};
-  return {
-      .name = "stats",
-      .summary = "Statistics over the runs of a store",
-      .example = "stats ablation --plan table2_ablation_synthetic",
-      .subcommands = {
-          subcommand({.name = "summary",
-                      .summary = "Median with confidence interval, quartiles, worst value and failures "
-                                 "of each variant on each sequence",
-                      .example = "stats summary --plan quick --metric " + arguments->metric,
-                      .options = {metric}},
-                     arguments, summary),
-          subcommand({.name = "ablation",
-                      .summary = "Paired differences from a base variant, with confidence interval and "
-                                 "effect size",
-                      .example = "stats ablation --plan table2_ablation_synthetic",
-                      .options = {metric, base}},
-                     arguments, stats_ablation),
-          subcommand({.name = "faults",
-                      .summary = "Matrix of sensor faults and variants: outcome, error after recovery and "
-                                 "false confidence",
-                      .example = "stats faults --plan faults"},
-                     arguments, stats_faults),
-          subcommand({.name = "imperfections",
-                      .summary = "Geometric means of the ATE over sequences with injected faults, lost runs "
-                                 "and false confidence",
-                      .example = "stats imperfections --plan imperfections"},
-                     arguments, stats_imperfections),
-          subcommand({.name = "repeat",
-                      .summary = "Check that repetitions, or runs of two machines, are bit-equal",
-                      .example = "stats repeat --store build/bench/store.sqlite",
-                      .options = {{"--with", "Store of another machine: compare the runs that both contain",
-                                   &arguments->other}}},
-                     arguments, stats_repeat),
-          subcommand({.name = "sweep",
-                      .summary = "Degradation curves: one row per value, sequence and variant",
-                      .example = "stats sweep --plan sweep_synthetic --csv",
-                      .options = {metric}},
-                     arguments, sweep)}};
+  std::vector<Command> subcommands = {
+      subcommand({.name = "summary",
+                  .summary = "Median with confidence interval, quartiles, worst value and failures "
+                             "of each variant on each sequence",
+                  .example = "stats summary --plan quick --metric " + arguments->metric,
+                  .options = {metric}},
+                 arguments, summary),
+      subcommand({.name = "ablation",
+                  .summary = "Paired differences from a base variant, with confidence interval and "
+                             "effect size",
+                  .example = "stats ablation --plan table2_ablation_synthetic",
+                  .options = {metric, base}},
+                 arguments, stats_ablation),
+      subcommand({.name = "faults",
+                  .summary = "Matrix of sensor faults and variants: outcome, error after recovery and "
+                             "false confidence",
+                  .example = "stats faults --plan faults"},
+                 arguments, stats_faults),
+      subcommand({.name = "imperfections",
+                  .summary = "Geometric means of the ATE over sequences with injected faults, lost runs "
+                             "and false confidence",
+                  .example = "stats imperfections --plan imperfections"},
+                 arguments, stats_imperfections),
+      subcommand({.name = "repeat",
+                  .summary = "Check that repetitions, or runs of two machines, are bit-equal",
+                  .example = "stats repeat build/bench/store.sqlite",
+                  .options = {{"--with", "Store of another machine: compare the runs that both contain",
+                               &arguments->other}}},
+                 arguments, stats_repeat),
+      subcommand({.name = "sweep",
+                  .summary = "Degradation curves: one row per value, sequence and variant",
+                  .example = "stats sweep --plan sweep_synthetic --csv",
+                  .options = {metric}},
+                 arguments, sweep)};
+  return {.name = "stats",
+          .summary = "Statistics over the runs of a store; without a subcommand: summary",
+          .example = "stats build/bench/store.sqlite",
+          .options = subcommands.front().options,
+          .action = subcommands.front().action,
+          .subcommands = std::move(subcommands)};
 }
 
 }  // namespace stillpoint::bench

@@ -28,12 +28,15 @@ namespace {
 
 constexpr std::size_t kListedCandidates = 5;
 
-/// Adds the option `--store` and the action to a command.
+/// Adds the store and the action to a command. With other arguments, the store is an option only.
 /// @param arguments target of the options; must have a member `store`
 template <class Arguments>
 Command store_subcommand(Command command, const std::shared_ptr<Arguments>& arguments,
                          int (*action)(const Arguments&)) {
-  command.options.push_back({"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store});
+  const bool has_arguments = std::ranges::any_of(
+      command.options, [](const Option& option) { return !option.name.starts_with('-'); });
+  command.options.push_back(store_option(&arguments->store));
+  if (has_arguments) command.options.back().argument.clear();
   command.action = [arguments, action] { return action(*arguments); };
   return command;
 }
@@ -130,7 +133,7 @@ std::vector<Command> acceptance_commands() {
                            arguments, withdraw),
           store_subcommand({.name = "accepted",
                             .summary = "List all accepted changes, one per line",
-                            .example = "store accepted"},
+                            .example = "store accepted build/bench/store.sqlite"},
                            arguments, list)};
 }
 
@@ -293,19 +296,20 @@ int salvage(const StoreArguments& arguments) {
 /// Subcommands that inspect single runs.
 std::vector<Command> run_subcommands(const std::shared_ptr<StoreArguments>& arguments) {
   const Option key{"KEY", "Key of the run or a prefix of it", &arguments->run};
-  return {
-      store_subcommand({.name = "list", .summary = "List all runs, one per line", .example = "store list"},
-                       arguments, list),
-      store_subcommand({.name = "show",
-                        .summary = "Print all data of a run",
-                        .example = "store show 8f18e31477d2f9b7",
-                        .options = {key}},
-                       arguments, show),
-      store_subcommand({.name = "extract",
-                        .summary = "Write trajectory, timings, result and manifest of a run as files",
-                        .example = "store extract 8f18e31477d2f9b7 /tmp/run",
-                        .options = {key, {"DIR", "Output folder", &arguments->file}}},
-                       arguments, extract)};
+  return {store_subcommand({.name = "list",
+                            .summary = "List all runs, one per line",
+                            .example = "store list build/bench/store.sqlite"},
+                           arguments, list),
+          store_subcommand({.name = "show",
+                            .summary = "Print all data of a run",
+                            .example = "store show 8f18e31477d2f9b7",
+                            .options = {key}},
+                           arguments, show),
+          store_subcommand({.name = "extract",
+                            .summary = "Write trajectory, timings, result and manifest of a run as files",
+                            .example = "store extract 8f18e31477d2f9b7 /tmp/run",
+                            .options = {key, {"DIR", "Output folder", &arguments->file}}},
+                           arguments, extract)};
 }
 
 Command salvage_command(const std::shared_ptr<StoreArguments>& arguments) {
@@ -331,12 +335,13 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
   return {
       store_subcommand({.name = "verify",
                         .summary = "Check the integrity of the database and its files; exit code 1 on errors",
-                        .example = "store verify",
+                        .example = "store verify build/bench/store.sqlite",
                         .options = {equal}},
                        arguments, verify),
-      store_subcommand(
-          {.name = "gc", .summary = "Remove files that are not referenced by any run", .example = "store gc"},
-          arguments, collect),
+      store_subcommand({.name = "gc",
+                        .summary = "Remove files that are not referenced by any run",
+                        .example = "store gc build/bench/store.sqlite"},
+                       arguments, collect),
       store_subcommand({.name = "merge",
                         .summary = "Add the runs of another store",
                         .example = "store merge other.sqlite --store all.sqlite",
@@ -367,7 +372,7 @@ Command store_command() {
   for (Command& command : acceptance_commands()) subcommands.push_back(std::move(command));
   return {.name = "store",
           .summary = "Inspect, verify, merge, export and import stores of runs",
-          .example = "store list --store build/bench/store.sqlite",
+          .example = "store list build/bench/store.sqlite",
           .subcommands = std::move(subcommands)};
 }
 
