@@ -205,6 +205,51 @@ RunSeries run_series(const bench::Store& store, const bench::StoredRun& run) {
 
 namespace {
 
+/// Indices of the frames that `thinned` keeps, ascending.
+std::vector<std::size_t> kept_frames(const RunSeries& series, std::size_t step) {
+  std::vector<bool> keep(series.t_s.size(), false);
+  for (std::size_t i = 0; i < keep.size(); i += step) keep[i] = true;
+  keep.back() = true;
+  for (const std::size_t frame : series.worst) keep[frame] = true;
+  for (const auto& [frame, kind] : series.images) keep[frame] = true;
+  for (const SeriesColumn& column : series.columns) {
+    if (column.name != "status") continue;
+    for (std::size_t i = 1; i < keep.size(); ++i) {
+      const bool both_missing = std::isnan(column.values[i]) && std::isnan(column.values[i - 1]);
+      keep[i] = keep[i] || (!both_missing && column.values[i] != column.values[i - 1]);
+    }
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (keep[i]) kept.push_back(i);
+  }
+  return kept;
+}
+
+}  // namespace
+
+RunSeries thinned(const RunSeries& series, std::size_t frames) {
+  if (series.t_s.size() <= frames) return series;
+  RunSeries thin;
+  thin.start_s = series.start_s;
+  thin.faults = series.faults;
+  thin.numbers = kept_frames(series, (series.t_s.size() + frames - 1) / frames);
+  std::map<std::size_t, std::size_t> indices;
+  for (const std::size_t frame : thin.numbers) {
+    indices[frame] = thin.t_s.size();
+    thin.t_s.push_back(series.t_s[frame]);
+  }
+  for (const SeriesColumn& column : series.columns) {
+    SeriesColumn& own = thin.columns.emplace_back(SeriesColumn{column.name, {}});
+    for (const std::size_t frame : thin.numbers) own.values.push_back(column.values[frame]);
+  }
+  for (const std::size_t frame : series.worst) thin.worst.push_back(indices.at(frame));
+  for (const auto& [frame, kind] : series.images) thin.images[indices.at(frame)] = kind;
+  return thin;
+}
+
+namespace {
+
 // Of the path length; defaults of rpg_trajectory_evaluation (Zhang and Scaramuzza, IROS 2018).
 constexpr double kLengthFractions[] = {0.1, 0.2, 0.3, 0.4, 0.5};
 

@@ -40,8 +40,13 @@ struct RunSeries {
   /// Indices into `t_s` by falling frame-to-frame error: the frames that have an image, else the 20 worst.
   std::vector<std::size_t> worst;
   std::vector<FaultBand> faults;              ///< injected ones
+  std::vector<std::size_t> numbers;           ///< indices of the frames before thinning; empty: all frames
   std::map<std::size_t, std::string> images;  ///< attachment kind by index into `t_s`
 };
+
+/// The series with about `frames` frames: equal steps, every frame in which the status changes, and all of
+/// `worst` and `images`, whose indices follow.
+[[nodiscard]] RunSeries thinned(const RunSeries& series, std::size_t frames);
 
 /// @throws InputError if files of the run are missing or damaged
 [[nodiscard]] RunSeries run_series(const bench::Store& store, const bench::StoredRun& run);

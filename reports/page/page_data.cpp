@@ -105,8 +105,12 @@ std::vector<std::string> page_images(const bench::Store& store, std::span<const 
 
 namespace {
 
-constexpr std::size_t kMaxTruthPoints = 2000;          // more than a plot can resolve
-constexpr std::size_t kImageBudgetBytes = 12'000'000;  // small enough to send the page by mail
+constexpr std::size_t kMaxTruthPoints = 2000;  // more than a plot can resolve
+// A page of 15 runs of a minute has less than 3 MB: scripts and licenses .3, images 1.2, series .8.
+constexpr std::size_t kImageBudgetBytes = 1'200'000;
+constexpr std::size_t kSeriesBudgetBytes = 800'000;
+constexpr std::size_t kMinFrames = 300;       // of a run, whatever the number of runs: a chart stays readable
+constexpr double kBytesPerValue = 8.0 / 3.0;  // 16 bits in base64
 constexpr const char* kModulePrefix = "ms:";
 
 std::string dump_replacing_invalid_utf8(const Json& json) {
@@ -195,9 +199,20 @@ Json series_json(const RunSeries& series, Json loops) {
   Json columns = Json::object();
   for (const SeriesColumn& column : series.columns)
     columns[clean_line(column.name)] = packed_series(column.values);
-  return {{"start", series.start_s}, {"frames", series.t_s.size()}, {"t", packed_series(series.t_s)},
-          {"worst", series.worst},   {"loops", std::move(loops)},   {"faults", faults_json(series.faults)},
-          {"columns", columns}};
+  Json json = {
+      {"start", series.start_s}, {"frames", series.t_s.size()}, {"t", packed_series(series.t_s)},
+      {"worst", series.worst},   {"loops", std::move(loops)},   {"faults", faults_json(series.faults)},
+      {"columns", columns}};
+  if (!series.numbers.empty())
+    json["numbers"] = packed_series(std::vector<double>(series.numbers.begin(), series.numbers.end()));
+  return json;
+}
+
+/// Frames of each of `runs` runs that the page contains.
+std::size_t frames_per_run(const RunSeries& series, std::size_t runs) {
+  const double bytes = kBytesPerValue * static_cast<double>(std::max<std::size_t>(1, series.columns.size()));
+  return std::max(kMinFrames,
+                  static_cast<std::size_t>(kSeriesBudgetBytes / bytes / static_cast<double>(runs)));
 }
 
 /// Times [ms] of all frames by module and variant.
@@ -287,12 +302,13 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
   std::map<std::string, Flame> flames;
   std::vector<RunSeries> all;
   for (const bench::StoredRun& run : runs) {
-    const RunSeries& series = all.emplace_back(run_series(store, run));
+    const RunSeries series = run_series(store, run);
+    const RunSeries& shown = all.emplace_back(thinned(series, frames_per_run(series, runs.size())));
     Json& entry = index["runs"].emplace_back(run_json(run));
     entry["frames"] = series.t_s.size();
     entry["images"] = series.images.size();
     data.series.push_back(
-        dump_replacing_invalid_utf8(series_json(series, loops_json(store, run, series.start_s))));
+        dump_replacing_invalid_utf8(series_json(shown, loops_json(store, run, series.start_s))));
     if (has_shown_times(runs, run)) {
       times = with_times(std::move(times), series, system_label(run.identity));
       if (const std::string folded = store.attachment(run, "stacks"); !folded.empty()) {

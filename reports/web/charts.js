@@ -33,20 +33,21 @@
   };
 
   page.STATUS = ["initializing", "tracking", "degraded", "dead reckoning", "lost", "relocated"];
-  const STATUS_COLORS = ["bad", null, "c4", "c3", "bad", "c2"];
+  const STATUS_COLORS = { initializing: "faint", degraded: "c4", "dead reckoning": "c3", lost: "bad", relocated: "c2" };
 
-  // Color of the background of a frame: its status; without one red where the odometry has no pose.
-  function shade(series, i) {
-    const status = series.columns.status ? series.columns.status[i] : null;
-    if (status !== null) return STATUS_COLORS[status];
-    return series.columns.x && series.columns.x[i] === null ? "bad" : null;
-  }
+  // Name of the status of a frame. Systems without one: initializing before the first pose, lost without one later.
+  page.statusAt = function (series, frame) {
+    const status = series.columns.status ? series.columns.status[frame] : null;
+    if (status !== null) return page.STATUS[Math.round(status)]; // quantized
+    if (!series.columns.x || series.columns.x[frame] !== null) return series.columns.x ? "tracking" : "unknown";
+    return series.columns.x.findIndex((x) => x !== null) > frame ? "initializing" : "lost";
+  };
 
   function shadeStatus(plot, series) {
     const { ctx, bbox } = plot;
     ctx.save();
     series.t.forEach((t, i) => {
-      const color = shade(series, i);
+      const color = STATUS_COLORS[page.statusAt(series, i)];
       if (!color) return;
       ctx.fillStyle = page.color(color) + "33";
       const until = series.t[Math.min(i + 1, series.frames - 1)];
@@ -74,7 +75,7 @@
     const has = (name) => series.columns[name] !== undefined;
     const charts = [];
     if (has("error_m")) {
-      const error = { id: "error", title: "Position error after alignment (ATE); background: degraded amber, dead reckoning violet, relocated green, lost or initializing red", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] };
+      const error = { id: "error", title: "Position error after alignment (ATE); background: initializing gray, degraded amber, dead reckoning violet, relocated green, lost red", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] };
       if (has("three_sigma_m")) {
         error.title += "; band: three claimed standard deviations, relative to the first pose";
         error.lines.unshift(line("3 sigma, claimed [m]", "c2", { width: 0.7, fill: page.color("c2") + "22" }));

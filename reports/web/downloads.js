@@ -13,7 +13,7 @@
     const series = page.series(run);
     const names = Object.keys(series.columns);
     const cell = (value) => (value === null ? "" : Number(value.toPrecision(9)).toString());
-    const lines = series.t.map((t, i) => [i, t.toFixed(4), ...names.map((name) => cell(series.columns[name][i]))].join(","));
+    const lines = series.t.map((t, i) => [page.frameNumber(series, i), t.toFixed(4), ...names.map((name) => cell(series.columns[name][i]))].join(","));
     return ["frame,t_s," + names.join(","), ...lines].join("\n") + "\n";
   };
 

@@ -5,7 +5,7 @@
   const byId = (id) => document.getElementById(id);
   const state = { run: -1, frame: null, worstAt: -1, charts: null, views: null, inspector: null };
 
-  const name = (run) => run.label + " on " + run.sequence + ", seed " + run.seed + (run.repetition > 1 ? ", repetition " + run.repetition : "")
+  const name = page.runName = (run) => run.label + " on " + run.sequence + ", seed " + run.seed + (run.repetition > 1 ? ", repetition " + run.repetition : "")
     + (run.sweep ? ", " + run.sweep.axis + " = " + run.sweep.value : "") + (run.outcome === "ok" ? "" : " (" + run.outcome + ")");
 
   function readout(series, frame) {
@@ -13,10 +13,9 @@
     place.replaceChildren();
     if (!series.frames) return;
     const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
-    add("frame", String(frame));
+    add("frame", String(page.frameNumber(series, frame)));
     add("time", series.t[frame].toFixed(3) + " s");
-    const status = series.columns.status ? series.columns.status[frame] : null;
-    if (status !== null) add("status", page.STATUS[status]);
+    add("status", page.statusAt(series, frame));
     for (const fault of series.faults) if (fault.begin <= series.t[frame] && series.t[frame] < fault.end) add("fault", fault.text);
     const shown = { error_m: "error [m]", three_sigma_m: "3 sigma, claimed [m]", three_sigma_deg: "3 sigma, claimed [deg]", frame_to_frame_error_m: "frame-to-frame error [m]", error_deg: "error [deg]", features: "features", landmarks: "landmarks in the window", dynamic: "dynamic fraction" };
     for (const [column, values] of Object.entries(series.columns)) {
@@ -35,34 +34,39 @@
     state.inspector.show(frame);
     if (!fromChart) state.charts.point(frame);
     byId("runs").dataset.frame = frame;
+    page.setState({ run: page.index.runs[state.run].key, frame });
     state.moving = false;
   }
 
+  function headed(titles) {
+    const table = page.element("table"), head = page.element("tr");
+    for (const title of titles) head.append(page.element("th", { scope: "col" }, title));
+    table.createTHead().append(head);
+    table.createTBody();
+    return table;
+  }
+
   function showMetrics(run) {
-    const table = page.element("table");
-    const head = page.element("tr");
-    for (const title of ["metric", "value", "unit", "protocol"]) head.append(page.element("th", { scope: "col" }, title));
-    table.append(head);
+    const table = headed(["metric", "value", "unit", "protocol"]);
     for (const [metric, value, unit, protocol] of run.metrics) {
       const row = page.element("tr");
       row.append(page.element("th", { scope: "row", title: page.index.tooltips[metric] || "" }, metric), page.element("td", {}, value === null ? "not finite" : Number(value.toPrecision(6)).toString()),
         page.element("td", {}, unit), page.element("td", {}, protocol));
-      table.append(row);
+      table.tBodies[0].append(row);
     }
     byId("metrics").replaceChildren(table);
+    page.stackTables(byId("metrics").parentElement);
   }
 
   // Lists the recognized places of the run; a click selects the frame.
   function showLoops(series) {
-    const table = page.element("table"), head = page.element("tr");
-    for (const title of ["time [s]", "earlier visit [s]", "inliers", "residual [px]", "result"]) head.append(page.element("th", { scope: "col" }, title));
-    table.append(head);
+    const table = headed(["time [s]", "earlier visit [s]", "inliers", "residual [px]", "result"]);
     for (const loop of series.loops) {
       const row = page.element("tr");
       for (const text of [loop.at.toFixed(2), loop.back.toFixed(2), loop.inliers, loop.residual.toFixed(2), loop.reason === "" ? "accepted" : "refused: " + loop.reason.replaceAll("_", " ")])
         row.append(page.element("td", {}, text));
       row.addEventListener("click", () => { if (loop.query >= 0) point(loop.query, false); });
-      table.append(row);
+      table.tBodies[0].append(row);
     }
     byId("loops").replaceChildren(table);
     byId("loops").closest("details").hidden = series.loops.length === 0;
@@ -85,7 +89,8 @@
     state.worstAt = -1;
     byId("run").value = state.run;
     const outcome = run.outcome === "ok" ? (series.frames ? "" : "The store has no frames of this run.") : run.outcome + ": " + run.detail;
-    byId("outcome").textContent = [outcome, ...run.notes].filter((text) => text).join(" ");
+    const part = series.numbers ? `The page contains ${series.frames} of the ${run.frames} frames of this run: equal steps, all changes of the status, and the worst.` : "";
+    byId("outcome").textContent = [outcome, part, ...run.notes].filter((text) => text).join(" ");
     showMetrics(run);
     showLoops(series);
     byId("repeat-run").textContent = command(run);
@@ -93,6 +98,8 @@
     state.charts = page.drawCharts(byId("series"), series, (frame) => point(frame, true), (min, max) => {
       state.views.zoom(min, max);
       byId("runs").dataset.zoom = min.toFixed(3) + " " + max.toFixed(3);
+      const all = min <= series.t[0] && max >= series.t[series.frames - 1];
+      page.setState({ zoom: all ? null : min.toFixed(3) + " " + max.toFixed(3) });
     });
     state.views.show(series, page.truth(state.run, series.start));
     readout(series, 0);
@@ -113,21 +120,37 @@
     point(worst[state.worstAt], false);
   }
 
-  // Lists the runs and the protocol of a number in a table.
-  function showSourceRuns(link) {
-    const keys = link.dataset.runs.split(" ");
-    const place = byId("source-runs"), protocol = link.closest("td").title;
-    place.replaceChildren("Source of " + link.textContent + ": " + (keys.length === 1 ? "one run: " : "median of the successful ones of " + keys.length + " runs: "));
-    for (const key of keys) {
-      const run = page.index.runs.find((candidate) => candidate.key === key);
-      if (run) place.append(page.element("a", { href: "#run=" + key }, name(run)), " ");
-    }
-    if (protocol) place.append(page.element("span", { class: "protocol" }, "Protocol: " + protocol));
+  // Compares the runs of a number in a table, added to the selected ones with ctrl, shift or meta.
+  function compareSources(link, adds) {
+    const keys = link.dataset.runs.split(" "), runs = keys.map((key) => indexOf(key)).filter((run) => run >= 0);
+    const source = "Source of " + link.textContent + ": " + (keys.length === 1 ? "one run" : "median of the successful ones of " + keys.length + " runs") + ". Protocol: " + link.closest("td").title;
+    page.compareRuns(adds ? [...page.comparedRuns(), ...runs] : runs, source);
+    openRun(runs[0]);
+    byId("compare").scrollIntoView();
+  }
+
+  const indexOf = (key) => page.index.runs.findIndex((run) => run.key === key);
+
+  function openRun(run) {
+    page.selectRun(run);
+    page.setState({ run: page.index.runs[state.run].key, frame: null, zoom: null }, true);
+  }
+
+  // Links to runs keep the other values of the state.
+  function onLink(event) {
+    const link = event.target.closest("a");
+    if (!link) return;
+    const key = /^#run=([0-9a-f]+)$/.exec(link.getAttribute("href") || "");
+    if (!link.dataset.runs && !key) return;
+    event.preventDefault();
+    if (link.dataset.runs) { compareSources(link, event.ctrlKey || event.shiftKey || event.metaKey); return; }
+    openRun(indexOf(key[1]));
+    byId("runs").scrollIntoView();
   }
 
   const KEYS = {
     ArrowRight: (event) => step(event.shiftKey ? 10 : 1), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1),
-    n: () => page.selectRun(state.run + 1), p: () => page.selectRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: () => state.charts.resetZoom(),
+    n: () => openRun(state.run + 1), p: () => openRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: () => state.charts.resetZoom(),
   };
 
   function onKey(event) {
@@ -138,32 +161,36 @@
     action(event);
   }
 
-  function fromHash() {
-    const key = /^#run=([0-9a-f]+)$/.exec(location.hash);
-    const index = key ? page.index.runs.findIndex((run) => run.key === key[1]) : -1;
-    if (index < 0) return false;
-    page.selectRun(index);
-    byId("runs").scrollIntoView();
-    return true;
+  // Run, frame and zoom of the address; else the first successful run.
+  function fromState() {
+    const first = page.index.runs.findIndex((run) => run.outcome === "ok" && run.frames > 0);
+    const run = indexOf(page.stateOf("run")), frame = page.stateOf("frame"), zoom = page.stateOf("zoom");
+    page.selectRun(run >= 0 ? run : Math.max(first, 0));
+    if (run < 0) return;
+    if (zoom) state.charts.zoom(...zoom.split(" ").map(Number));
+    if (frame !== null && Number(frame) < page.series(run).frames) point(Number(frame), false);
   }
 
   page.startExplorer = function () {
     const list = byId("run");
     page.index.runs.forEach((run, i) => list.append(page.element("option", { value: i }, name(run))));
     state.views = page.pathViews(byId("paths"), (frame) => point(frame, false));
-    list.addEventListener("change", () => page.selectRun(Number(list.value)));
-    byId("previous").addEventListener("click", () => page.selectRun(state.run - 1));
-    byId("next").addEventListener("click", () => page.selectRun(state.run + 1));
+    list.addEventListener("change", () => openRun(Number(list.value)));
+    byId("previous").addEventListener("click", () => openRun(state.run - 1));
+    byId("next").addEventListener("click", () => openRun(state.run + 1));
     byId("worst").addEventListener("click", () => stepWorst(1));
     state.inspector = page.inspector((frame) => { state.worstAt = page.series(state.run).worst.indexOf(frame); point(frame, false); });
-    document.addEventListener("click", (event) => { const link = event.target.closest("a[data-runs]"); if (link) showSourceRuns(link); });
+    document.addEventListener("click", onLink);
+    byId("compare-this").addEventListener("click", () => { page.compareRuns([...page.comparedRuns(), state.run]); byId("compare").scrollIntoView(); });
     byId("reset-zoom").addEventListener("click", () => state.charts.resetZoom());
     document.addEventListener("keydown", onKey);
-    window.addEventListener("hashchange", fromHash);
     window.addEventListener("resize", () => { state.charts.resize(); state.views.redraw(); });
-    const first = page.index.runs.findIndex((run) => run.outcome === "ok" && run.frames > 0);
-    if (!fromHash()) page.selectRun(Math.max(first, 0));
+    page.onState(fromState);
   };
-  page.redrawExplorer = () => page.selectRun(state.run);
+  page.redrawExplorer = function () {
+    const frame = state.frame;
+    page.selectRun(state.run);
+    if (frame !== null) point(frame, false);
+  };
   page.selectedRun = () => state.run;
 })(window.stillpoint);

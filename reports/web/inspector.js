@@ -16,7 +16,7 @@
     function list() {
       byId("worst-list").replaceChildren(...series.worst.map((frame) => {
         const item = page.element("li");
-        const button = page.element("button", { type: "button", "data-frame": frame }, "frame " + frame + ": " + frameError(series, frame));
+        const button = page.element("button", { type: "button", "data-frame": frame }, "frame " + page.frameNumber(series, frame) + ": " + frameError(series, frame));
         button.addEventListener("click", () => onFrame(frame));
         item.append(button);
         return item;
@@ -30,8 +30,8 @@
       if (jpeg) image.src = "data:image/jpeg;base64," + jpeg;
       else image.removeAttribute("src");
       const place = rank < 0 ? "" : ", " + (rank + 1) + " of the " + series.worst.length + " worst, " + frameError(series, frame);
-      image.alt = "Annotated image of frame " + frame + place;
-      byId("frame-caption").textContent = "Frame " + frame + place + (jpeg ? "" : "; no image embedded");
+      image.alt = "Annotated image of frame " + page.frameNumber(series, frame) + place;
+      byId("frame-caption").textContent = "Frame " + page.frameNumber(series, frame) + place + (jpeg ? "" : "; no image embedded");
       for (const button of byId("worst-list").querySelectorAll("button"))
         button.toggleAttribute("aria-current", Number(button.dataset.frame) === frame);
       byId("runs").dataset.image = jpeg ? frame : "";

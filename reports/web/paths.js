@@ -41,6 +41,16 @@
     context.stroke();
   }
 
+  function sharpContext(canvas) {
+    const ratio = window.devicePixelRatio || 1;
+    canvas.width = canvas.clientWidth * ratio;
+    canvas.height = canvas.clientHeight * ratio;
+    const context = canvas.getContext("2d");
+    context.scale(ratio, ratio);
+    context.font = "12px system-ui, sans-serif";
+    return context;
+  }
+
   function scaleBar(context, canvas, view) {
     const length = Math.pow(10, Math.floor(Math.log10(canvas.clientWidth / 2 / view.scale)));
     const y = canvas.clientHeight - 10;
@@ -49,6 +59,22 @@
     context.beginPath(); context.moveTo(12, y); context.lineTo(12 + length * view.scale, y); context.stroke();
     context.fillText(length + " m", 16 + length * view.scale, y + 3);
   }
+
+  // Draws paths {x, y, color, dash, width, at: marked index} on one scale; a gap where a value is null.
+  page.drawPaths = function (canvas, lines) {
+    const context = sharpContext(canvas);
+    const shown = projection(canvas, lines.map((line) => line.x), lines.map((line) => line.y));
+    for (const { x, y, color, dash, width, at } of lines) {
+      context.strokeStyle = context.fillStyle = color;
+      context.lineWidth = width;
+      context.setLineDash(dash);
+      strokeLine(context, x, y, shown);
+      if (at === undefined || x[at] === null) continue;
+      context.beginPath(); context.arc(shown.x(x[at]), shown.y(y[at]), 4.5, 0, 7); context.fill();
+    }
+    context.setLineDash([]);
+    scaleBar(context, canvas, shown);
+  };
 
   class PathView {
     constructor(place, view, onFrame) {
@@ -76,12 +102,7 @@
 
     draw() {
       const { canvas, series, truth, view } = this;
-      const ratio = window.devicePixelRatio || 1;
-      canvas.width = canvas.clientWidth * ratio;
-      canvas.height = canvas.clientHeight * ratio;
-      const context = canvas.getContext("2d");
-      context.scale(ratio, ratio);
-      context.font = "12px system-ui, sans-serif";
+      const context = sharpContext(canvas);
       const columns = series.columns;
       const across = [columns[view.across] || [], truth ? truth[view.across] : []];
       const up = [columns[view.up] || [], truth ? truth[view.up] : []];
@@ -93,7 +114,7 @@
       scaleBar(context, canvas, this.shown);
     }
 
-    // The ground truth is thick and red where the odometry has no pose.
+    // The ground truth is thick and red where the odometry lost its pose; before the first pose it is not lost.
     drawTruth(context) {
       const { truth, series, view, shown } = this;
       context.strokeStyle = page.color("faint");
@@ -103,7 +124,7 @@
       let frame = 0;
       const lost = truth.t.map((t) => {
         while (frame + 1 < series.frames && series.t[frame + 1] <= t) ++frame;
-        return t >= series.t[0] && t <= series.t[series.frames - 1] && series.columns.x[frame] === null;
+        return t >= series.t[0] && t <= series.t[series.frames - 1] && series.columns.x[frame] === null && page.statusAt(series, frame) !== "initializing";
       });
       context.strokeStyle = page.color("bad");
       context.lineWidth = 3;

@@ -27,13 +27,14 @@ window.stillpoint = {};
     return best;
   };
 
-  // Series of a run: {start, frames, t, worst, loops, faults, columns: {name: numbers}}; a few are cached.
+  // Series of a run: {start, frames, t, numbers, worst, loops, faults, columns: {name: numbers}}; a few are cached.
+  // `numbers`: frame numbers if the page contains a part of the frames only, else null.
   // A fault: {begin, end: times; text}.
   // A loop: {query, match: frames or -1; at, back: times; inliers, residual, reason: empty if it is accepted}.
   const cache = new Map();
   page.series = function (run) {
     if (!cache.has(run)) {
-      if (cache.size > 8) cache.clear();
+      if (cache.size > 24) cache.clear();
       const packed = parse("series-" + run);
       const columns = {};
       for (const [name, column] of Object.entries(packed.columns)) columns[name] = page.unpack(column);
@@ -41,13 +42,20 @@ window.stillpoint = {};
       const loops = packed.loops.map(([at, back, inliers, residual, reason]) =>
         ({ at, back, inliers, residual, reason, query: page.nearest(t, at), match: page.nearest(t, back) }));
       const faults = packed.faults.map(([begin, end, text]) => ({ begin, end, text }));
-      cache.set(run, { start: packed.start, frames: packed.frames, t, worst: packed.worst, loops, faults, columns });
+      const numbers = packed.numbers ? page.unpack(packed.numbers).map(Math.round) : null;
+      cache.set(run, { start: packed.start, frames: packed.frames, t, numbers, worst: packed.worst, loops, faults, columns });
     }
     return cache.get(run);
   };
 
+  page.frameNumber = (series, frame) => (series.numbers ? series.numbers[frame] : frame);
+
   // {frame: JPEG in base64} of a run.
-  page.images = (run) => (document.getElementById("images-" + run) ? parse("images-" + run) : {});
+  const images = new Map();
+  page.images = function (run) {
+    if (!images.has(run)) images.set(run, document.getElementById("images-" + run) ? parse("images-" + run) : {});
+    return images.get(run);
+  };
 
   // Ground truth of a run, with times relative to its first frame; null without one.
   page.truth = function (run, start) {

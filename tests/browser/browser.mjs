@@ -14,16 +14,16 @@ export const ready = (page) => page.waitForFunction(() => document.documentEleme
   .catch(() => assert.fail("not ready: " + page.problems.join("; ")));
 
 // Opens a file. Requests other than the file itself are recorded as problems unless `isAllowed` accepts them.
-export async function open(file, options = {}, isAllowed = () => false) {
+export async function open(file, options = {}, isAllowed = () => false, hash = "") {
   const page = await browser.newPage({ viewport: { width: 1300, height: 900 }, ...options });
   page.problems = [];
   page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.problems.push(message.text()); });
   page.on("pageerror", (error) => page.problems.push(error.message));
   page.on("dialog", (dialog) => { page.problems.push("dialog " + dialog.message()); dialog.dismiss(); });
   page.on("request", (request) => {
-    if (request.url() !== "file://" + file && !isAllowed(request) && !/^(data|blob):/.test(request.url())) page.problems.push("request " + request.url());
+    if (request.url().split("#")[0] !== "file://" + file && !isAllowed(request) && !/^(data|blob):/.test(request.url())) page.problems.push("request " + request.url());
   });
-  await page.goto("file://" + file);
+  await page.goto("file://" + file + hash);
   await ready(page);
   return page;
 }

@@ -27,6 +27,104 @@ await test("hovering one chart moves the cursor of all charts and shows the fram
   assert.equal(new Set(cursors).size, 1);
 });
 
+await test("the results are a matrix with a dot per run, sorted, filtered, and copied in three formats", async () => {
+  const rows = () => page.$$eval("#table-ate_rmse_m tbody tr", (lines) => lines.map((line) => [...line.cells].map((cell) => (cell.querySelector("a[data-runs]") || cell).textContent)));
+  const before = await rows();
+  const dots = await page.$$eval("#table-ate_rmse_m td", (cells) => cells.map((cell) => [cell.querySelectorAll("circle, .failed").length, (cell.querySelector("a[data-runs]")?.dataset.runs ?? "").split(" ").filter((key) => key).length]));
+  for (const [drawn, runs] of dots) assert.equal(drawn, runs);
+  for (const direction of [1, -1]) {
+    await page.locator("#table-ate_rmse_m .sort").first().press("Enter");
+    const numbers = (await rows()).map((row) => direction * parseFloat(row[1])).filter(Number.isFinite);
+    assert.deepEqual(numbers, numbers.toSorted((a, b) => a - b));
+  }
+  await page.fill("#filter", before[0][0].toUpperCase());
+  const shown = await rows();
+  assert.ok(shown.length > 0 && shown.length < before.length && shown.every((row) => row[0].includes(before[0][0])));
+  for (const [format, expected] of [["CSV", /^[^,\n]+,/], ["Markdown", /^\| .* \|\n\| --- \| ---: \|/], ["LaTeX", /^\\begin\{tabular\}\{lr+\}\n\\toprule/]]) {
+    await page.click(`[data-copy=${format}]`);
+    const text = await page.inputValue("#copied");
+    assert.match(text, expected);
+    assert.ok(text.includes(shown[0][1]), text);
+  }
+  await page.fill("#filter", "");
+  assert.equal((await rows()).length, before.length);
+});
+
+await test("runs of a cell and others are compared: paths, errors, status, faults, numbers, differences, frames at one time", async () => {
+  const keys = await page.evaluate(() => {
+    const { index } = window.stillpoint;
+    const of = (label, blank) => index.runs.find((run) => run.label.startsWith(label) && run.sequence.includes("walking_xyz") && run.sequence.includes("blank") === blank && !run.sweep);
+    return [of("stillpoint", true), of("vo", false)].map((run) => run.key);
+  });
+  await page.evaluate(() => document.querySelector("#table-ate_rmse_m a[data-runs]").scrollIntoView());
+  await page.locator(`#table-ate_rmse_m a[data-runs~="${keys[0]}"]`).click();
+  await page.locator(`#table-ate_rmse_m a[data-runs~="${keys[1]}"]`).click({ modifiers: ["Shift"] });
+  const compared = async () => (await selection(page, "compare")).runs.split(".");
+  assert.deepEqual((await compared()).toSorted(), keys.toSorted());
+  assert.match(await page.textContent("#compare-source"), /^Source of .* Protocol: /);
+  assert.equal(await page.locator("#compare-error .u-series").count(), 3);
+  assert.ok(await page.locator("#compare-status .fault").count() === 1 && await page.locator("#compare-status .bar").count() === 2);
+  const initializing = await page.$eval("#compare-status .initializing", (part) => getComputedStyle(part).backgroundColor);
+  assert.notEqual(initializing, await page.evaluate(() => { const part = document.createElement("span"); part.className = "status lost"; document.body.append(part); const color = getComputedStyle(part).backgroundColor; part.remove(); return color; }));
+  assert.ok(await page.locator("#compare-metrics tbody tr").count() > 5);
+  await page.locator("#compare-differences").press("Enter");
+  assert.match(await page.textContent("#compare-config"), /imu\.enabled/);
+  const colors = await page.$eval("#compare-path", (canvas) => new Set(new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size);
+  assert.ok(colors > 4, colors + " colors in the plan");
+  await page.locator("#compare-time").focus();
+  await page.keyboard.press("Home");
+  const frames = () => page.$$eval("#compare-frames img", (images) => images.map((image) => image.alt));
+  const first = await frames();
+  await page.keyboard.press("End");
+  assert.notDeepEqual(await frames(), first);
+  assert.match(await page.textContent("#compare-at"), /^[23]\.\d\d s$/);
+});
+
+await test("the address holds the state of the page", async () => {
+  await page.click("#theme");
+  await page.selectOption("#metric", "coverage");
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("ArrowRight");
+  const state = (page) => page.evaluate(() => ({ ...document.getElementById("runs").dataset, compared: document.getElementById("compare").dataset.runs, time: document.getElementById("compare-at").textContent,
+    theme: document.documentElement.dataset.theme, metric: document.getElementById("metric").value, sorted: document.querySelector("#table-coverage [aria-sort]:not([aria-sort=none])")?.textContent }));
+  await selection(page, "runs");
+  const before = await state(page);
+  const other = await open(PAGE, { viewport: { width: 390, height: 844 } }, undefined, new URL(page.url()).hash);
+  await selection(other, "runs");
+  assert.deepEqual(await state(other), before);
+  assert.ok(before.theme && before.compared && before.frame && before.metric === "coverage");
+  const wide = await other.evaluate(() => [document.documentElement.scrollWidth - innerWidth, ...[...document.querySelectorAll(".table")].filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.parentElement.textContent.slice(0, 60))]);
+  assert.deepEqual(wide, [0], "wider than a phone");
+  await other.close();
+  await page.goBack();
+  assert.equal(await page.inputValue("#metric"), "ate_rmse_m");
+  await page.click("#compare-clear");
+  assert.equal(await page.locator("#compare-views").isVisible(), false);
+  await page.click("#theme");
+});
+
+await test("text has a contrast of 4.5 in both themes", async () => {
+  for (let i = 0; i < 2; ++i) {
+    const low = await page.evaluate(() => {
+      const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+      const channels = (colors) => { context.clearRect(0, 0, 1, 1); for (const color of colors) { context.fillStyle = color; context.fillRect(0, 0, 1, 1); } return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3); };
+      const luminance = (colors) => channels(colors).map((value) => value / 255).map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)).reduce((sum, value, c) => sum + value * [0.2126, 0.7152, 0.0722][c], 0);
+      const found = new Set();
+      for (const element of document.querySelectorAll("body *")) {
+        if (!element.checkVisibility() || element.closest("svg, canvas") || ![...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim())) continue;
+        const grounds = [];
+        for (let at = element; at; at = at.parentElement) grounds.unshift(getComputedStyle(at).backgroundColor);
+        const [a, b] = [luminance(grounds), luminance([...grounds, getComputedStyle(element).color])].toSorted();
+        const contrast = (b + 0.05) / (a + 0.05);
+        if (contrast < 4.5) found.add(`${element.tagName}.${element.className} ${contrast.toFixed(2)}`);
+      }
+      return [...found];
+    });
+    assert.deepEqual(low, []);
+    await page.click("#theme");
+  }
+});
+
 await test("the error has a band of three claimed standard deviations, and faults a bar", async () => {
   const fault = await page.evaluate(() => {
     const { index, series, selectRun } = window.stillpoint;
@@ -144,8 +242,7 @@ await test("a number in a table links to its run", async () => {
   const key = (await link.getAttribute("href")).slice("#run=".length);
   await link.click();
   await page.waitForFunction((wanted) => document.getElementById("runs").dataset.run === wanted, key);
-  assert.equal(await page.locator(`#source-runs a[href="#run=${key}"]`).count(), 1);
-  assert.match(await page.textContent("#source-runs"), /Protocol: /);
+  assert.equal(await page.locator(`#compared a[href="#run=${key}"]`).count(), 1);
   assert.match(await page.textContent("#repeat-run"), /^stillpoint bench '\w+' --filter '[^']+' --filter '\w+( \+ [^']+)?' --store/);
 });
 
@@ -215,7 +312,7 @@ await test("hostile names are shown as text and do not widen the page", async ()
   const opened = await open(file);
   for (const key of ["n", "w"]) await opened.keyboard.press(key);
   await opened.locator("#table-ate_rmse_m td a").last().click();
-  assert.equal(await opened.locator("img:not(#frame-image)").count(), 0);
+  assert.equal(await opened.locator("img:not(#frame-image, [src^='data:image/jpeg;'])").count(), 0);
   assert.equal(await opened.evaluate(() => window.broken), undefined);
   assert.ok(await opened.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the window");
   assert.deepEqual(opened.problems, []);

@@ -109,6 +109,27 @@ TEST(RunSeries, ContainsThreeClaimedStandardDeviationsWhereTheyAreReported) {
   EXPECT_NEAR(column(series, "three_sigma_deg")[2], 0.006 * 180.0 / M_PI, 1e-12);
 }
 
+TEST(RunSeries, IsThinnedWithoutLosingChangesOfTheStatusAndWorstFrames) {
+  RunSeries series;
+  SeriesColumn status{.name = "status", .values = {}};
+  for (int i = 0; i < 1000; ++i) {
+    series.t_s.push_back(0.1 * i);
+    status.values.push_back(i == 503 ? 4.0 : i < 20 ? std::nan("") : 1.0);
+  }
+  series.columns = {status};
+  series.worst = {777, 33};
+  series.images = {{33, "image:33"}};
+  const RunSeries thin = thinned(series, 100);
+  ASSERT_EQ(thin.t_s.size(), thin.numbers.size());
+  EXPECT_LT(thin.t_s.size(), 110u);
+  for (std::size_t i = 0; i < thin.numbers.size(); ++i) EXPECT_EQ(thin.t_s[i], series.t_s[thin.numbers[i]]);
+  EXPECT_EQ(thin.numbers.back(), 999u);
+  EXPECT_EQ(std::ranges::count(column(thin, "status"), 4.0), 1);
+  EXPECT_EQ(thin.numbers[thin.worst[0]], 777u);
+  EXPECT_EQ(thin.numbers[thin.images.begin()->first], 33u);
+  EXPECT_TRUE(thinned(series, 1000).numbers.empty());
+}
+
 TEST(RunSeries, ContainsTheTimesOfInjectedFaults) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
