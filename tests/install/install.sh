@@ -8,6 +8,10 @@ cmake="$1" build="$2" prefix="$3"
 rm -rf "$prefix"
 "$cmake" --install "$build" --prefix "$prefix" >"$build/install.log" || { cat "$build/install.log"; exit 1; }
 "$prefix/bin/stillpoint" --help >/dev/null
+# After demo.sh only the program is built; its component needs no other target.
+"$cmake" --install "$build" --prefix "$prefix.program" --component program >>"$build/install.log"
+"$prefix.program/bin/stillpoint" --help >/dev/null
+rm -rf "$prefix.program"
 
 # An include that was not rewritten would be found in the sources of this machine, but not on another.
 if grep -rnE '#include "(core|eval|datasets|bench)/' "$prefix/include" "$prefix/share"; then
