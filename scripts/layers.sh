@@ -89,7 +89,7 @@ row datasets/download core/base
 row datasets/faults core/base core/geometry core/types datasets datasets/io datasets/synthetic datasets/synthetic/materials
 datasets="datasets datasets/io datasets/calibration datasets/formats datasets/synthetic/sequence"
 
-row core/examples $core $eval $datasets
+row core/examples $core $eval $datasets bench/config
 
 # --- bench: each folder includes those above it ---
 row bench/model $messages eval eval/metrics eval/trajectory

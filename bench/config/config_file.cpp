@@ -13,8 +13,6 @@
 #include "bench/config/key_effects.h"
 #include "bench/config/settings.h"
 #include "bench/config/toml_source.h"
-#include "bench/model/stored_run.h"
-#include "core/base/content_hash.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -192,14 +190,6 @@ std::string config_text(const OdometryConfig& config) {
   std::string text;
   for (const auto& [key, value] : config_entries(config)) text += fmt::format("{} = {}\n", key, value);
   return text;
-}
-
-std::string config_hash(const OdometryConfig& config) {
-  std::string text;
-  for (const auto& [key, value] : config_entries(config)) {
-    if (key != kPerturbationKey) text += fmt::format("{} = {}\n", key, value);
-  }
-  return perturbed_hash(hash_text(content_hash(text)), config.pipeline.perturbation_seed);
 }
 
 std::string difference_text(const OdometryConfig& a, const OdometryConfig& b) {

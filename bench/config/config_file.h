@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Resolves configs: a base file with the files it inherits, then overlays, then single settings.
+/// Resolves configs: a base file with the files it inherits, then overlays, then single settings. It is the
+/// component `config` of an installation: `load_config({})` is the config of `stillpoint run`.
 ///
 /// Text form of a config: all keys with their values, for display, manifests and comparison.
 #pragma once
@@ -46,10 +47,6 @@ struct ConfigEntry {
 
 /// The entries as TOML text with dotted keys, one per line.
 [[nodiscard]] std::string config_text(const OdometryConfig& config);
-
-/// Hash of all values of the config, as 16 hexadecimal digits; with a perturbed input, its seed follows (see
-/// bench/model/stored_run.h).
-[[nodiscard]] std::string config_hash(const OdometryConfig& config);
 
 /// The entries of `changed` whose values differ from those of `parent`.
 [[nodiscard]] std::vector<ConfigEntry> config_difference(const OdometryConfig& parent,

@@ -2,11 +2,10 @@
 # The program of STILLPOINT_MINIMAL: the sources that `run`, `eval`, `config`, `device` and `data check` need, and
 # absent_parts.cpp in place of what they could call beyond that.
 
-file(GLOB minimal_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/config/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/run/*.cpp
-     ${CMAKE_CURRENT_SOURCE_DIR}/record/*.cpp)
+file(GLOB minimal_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/run/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/record/*.cpp)
 list(FILTER minimal_sources EXCLUDE REGEX "/run/sequence_source.cpp$")
 set(more_sources
-  bench/minimal/absent_parts bench/profile/timeline bench/profile/meters/allocation_watch
+  bench/config/config_hash bench/minimal/absent_parts bench/profile/timeline bench/profile/meters/allocation_watch
   bench/profile/meters/allocations_uncounted bench/profile/meters/device_info bench/profile/meters/process_usage
   bench/profile/meters/run_monitor reports/drawing/chart reports/drawing/cost_plots reports/drawing/curves reports/drawing/drawing
   reports/drawing/figures reports/drawing/openloris_figure reports/drawing/path_figure reports/frames/annotated_frames
@@ -23,8 +22,8 @@ list(TRANSFORM more_sources REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.cpp")
 list(TRANSFORM program_sources REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.cpp")
 
 stillpoint_library(stillpoint_minimal HEADERS bench
-  SOURCES ${minimal_sources} ${more_sources} ${embedded_source} ${build_info_source}
-  PUBLIC stillpoint_pipeline stillpoint_datasets stillpoint_faults stillpoint_eval stillpoint_model Threads::Threads
+  SOURCES ${minimal_sources} ${more_sources} ${build_info_source}
+  PUBLIC stillpoint_config stillpoint_pipeline stillpoint_datasets stillpoint_faults stillpoint_eval stillpoint_model Threads::Threads
   PRIVATE opencv_imgproc fmt::fmt nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus)
 stillpoint_group(stillpoint_minimal ACROSS_FOLDERS)
 add_dependencies(stillpoint_minimal stillpoint_git_state)

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/config/config_hash.h"
 #include "bench/process/child_process.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_file.h"
+#include "bench/config/config_hash.h"
 #include "bench/model/run_csv.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/result_values.h"

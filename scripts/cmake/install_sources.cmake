@@ -7,7 +7,7 @@
 file(REMOVE_RECURSE ${STAGE})
 foreach(name IN LISTS FILES)
   file(READ ${ROOT}/${name} text)
-  string(REGEX REPLACE "(#include \")(core|eval|datasets)/" "\\1stillpoint/\\2/" text "${text}")
+  string(REGEX REPLACE "(#include \")(core|eval|datasets|bench)/" "\\1stillpoint/\\2/" text "${text}")
   file(WRITE ${STAGE}/${name} "${text}")
 endforeach()
 file(INSTALL ${STAGE}/ DESTINATION ${DESTINATION})

@@ -10,7 +10,7 @@ function(stillpoint_public_headers root result)
   file(GLOB_RECURSE headers RELATIVE ${root} ${patterns} ${root}/eval/*.h)
   file(GLOB datasets_headers RELATIVE ${root} ${root}/datasets/*.h ${root}/datasets/io/sequence_info.h
        ${root}/datasets/cache/frame_cache_options.h)
-  list(APPEND headers ${datasets_headers} core/dynamic/semantic_mask.h
+  list(APPEND headers ${datasets_headers} bench/config/config_file.h core/dynamic/semantic_mask.h
        core/pipeline/stages/frame_report.h core/pipeline/odometry.h core/pipeline/threaded_odometry.h)
   list(REMOVE_ITEM headers
        core/base/thread_name.h       # needs pthreads

@@ -6,6 +6,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/config/config_file.h"
+#include "bench/config/config_hash.h"
 #include "bench/config/toml_source.h"
 
 namespace stillpoint::bench {

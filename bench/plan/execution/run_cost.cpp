@@ -31,16 +31,16 @@ std::string variant_key(const RunIdentity& run) {
 }
 
 /// Upper median; nullopt without values.
-std::optional<double> median_of(std::vector<double> values) {
+std::optional<double> median_duration(std::vector<double> values) {
   if (values.empty()) return std::nullopt;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
-std::optional<double> median_of(const Durations& durations, const std::string& key) {
+std::optional<double> median_duration(const Durations& durations, const std::string& key) {
   const auto found = durations.find(key);
-  return found == durations.end() ? std::nullopt : median_of(found->second);
+  return found == durations.end() ? std::nullopt : median_duration(found->second);
 }
 
 /// Number of frames of a run that has no history.
@@ -62,13 +62,13 @@ class CostHistory {
       const std::optional<double> frames = metric_value(run, metric_id::kFrames);
       if (frames && *frames > 0.0) per_frame_.push_back(*seconds / *frames);
     }
-    seconds_per_frame_ = median_of(per_frame_);
+    seconds_per_frame_ = median_duration(per_frame_);
   }
 
   [[nodiscard]] RunCost cost_of(const PlanSequence& sequence, const PlannedRun& run) const {
-    if (const auto same = median_of(by_variant_, variant_key(run.identity)))
+    if (const auto same = median_duration(by_variant_, variant_key(run.identity)))
       return {*same, CostSource::kSameRun};
-    if (const auto same = median_of(by_sequence_, sequence_key(run.identity)))
+    if (const auto same = median_duration(by_sequence_, sequence_key(run.identity)))
       return {*same, CostSource::kSequence};
     return {frames_of(sequence, run) * seconds_per_frame_.value_or(kAssumedSecondsPerFrame),
             seconds_per_frame_ ? CostSource::kFrames : CostSource::kAssumed};

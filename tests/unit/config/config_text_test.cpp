@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/config/config_hash.h"
 #include "bench/config/settings.h"
 #include "bench/model/stored_run.h"
 
