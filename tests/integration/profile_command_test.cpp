@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint profile`: profile of one run.
+#include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +10,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tests/support/program.h"
 #include "tests/support/sequences/rendered_sequence.h"
@@ -112,6 +117,22 @@ TEST(ProfileCommand, ReportsUnavailableMeasurements) {
   EXPECT_NE(counters, result.out.find("hardware counters: n/a: ") != std::string::npos) << result.out;
   const bool energy = !profiled.at("energy_j").is_null();
   EXPECT_NE(energy, result.out.find("energy: n/a: ") != std::string::npos) << result.out;
+}
+
+TEST(ProfileCommand, NamesABusyMachine) {
+  const pid_t other = fork();
+  if (other == 0) {
+    for (std::atomic<unsigned> count = 0;; ++count) {
+    }
+  }
+  const TemporaryFolder folder;
+  const ProgramResult result = profile(folder);
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("the machine was not idle: other processes used"), std::string::npos)
+      << result.out;
+  EXPECT_GT(read_json(folder.path() / "profile.json").at("other_load"), 0.05);
 }
 
 /// A sensor that shows 4.96 W all the time.

@@ -321,6 +321,7 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   EnergyWatch energy(arguments);
   const HardwareCounters counters;
   const ProcessUsage before = process_usage();
+  const MachineLoad load_before = machine_load();
   const auto on_frame = [&](const FrameReport& report) {
     allocations.end_frame();
     progress.update(static_cast<std::size_t>(report.update.frame_id) + 1);
@@ -333,6 +334,10 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   Profile profile{.run = run_odometry(stream, spec_of(arguments),
                                       {.on_frame = {on_frame}, .stop_requested = interrupt_requested})};
   profile.usage = usage_between(before, process_usage());
+  for (const Metric& metric :
+       load_metrics(load_before, machine_load(), profile.usage.user_s + profile.usage.system_s)) {
+    if (metric.name == metric_id::kOtherLoad) profile.other_load = metric.value;
+  }
   profile.counters = counters.counts();
   profile.counters_missing = counters.reason();
   energy.sample(static_cast<std::int64_t>(profile.run.summary.frames));

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/model/resource_metrics.h"
 #include "core/base/error.h"
 #include "reports/tables/text_format.h"
 
@@ -174,6 +175,7 @@ std::string profile_text(const Profile& profile, const ProfileTitle& title) {
     return value ? Json(*value) : Json(nullptr);
   };
   json["energy_j"] = profile.energy ? Json(profile.energy->joules) : Json(nullptr);
+  json["other_load"] = or_null(profile.other_load);
   json["idle_power_w"] = or_null(profile.idle_w);
   json["energy_j_per_frame"] = or_null(profile.energy_above_idle.joules_per_frame);
   json["energy_j_per_frame_sd"] = or_null(profile.energy_above_idle.joules_per_frame_sd);
@@ -186,6 +188,12 @@ std::string profile_text(const Profile& profile, const ProfileTitle& title) {
 }
 
 void print_profile(const Profile& profile) {
+  if (profile.other_load.value_or(0.0) >= kMaxQuietLoad) {
+    std::cout << fmt::format(
+        "the machine was not idle: other processes used {:.0f} % of the CPU; these times are larger than "
+        "those of an idle machine\n",
+        100.0 * *profile.other_load);
+  }
   print_times(profile.rows, profile.misses);
   std::cout << fmt::format(
       "{} frames in {:.2f} s; over {:g} ms: {} on one thread, {} with one thread per stage\n",

@@ -53,7 +53,8 @@ struct Profile {
   std::optional<double> idle_w;     ///< power before the run
   DeviceScore energy_above_idle;    ///< see `energy_score`; empty without `idle_w`
   RecorderCost recorder;
-  std::vector<DriftRow> drift;  ///< with --duration
+  std::vector<DriftRow> drift;       ///< with --duration
+  std::optional<double> other_load;  ///< CPU load by other processes, 0 to 1; see metric "quiet"
 };
 
 /// Identification of the profiled run.
