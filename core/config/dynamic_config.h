@@ -43,6 +43,7 @@ struct DynamicConfig {
   int mcc_min_observations = 2;
   int recycle_min_frames = 0;
   int min_static_frames = 0;
+  int masked_static_frames = 0;
   bool gate_before_solve = false;
   double gate_probability = 0;
   int min_stable_features = 0;
@@ -118,6 +119,11 @@ void visit_consistency_fields(Visitor&& field, Config& config) {
             "A dynamic feature is readmitted, without its older observations, after this many consecutive "
             "frames at one place of the world; 0 = never; not in the paper.",
             "frames", 0, 1000});
+  field("masked_static_frames", config.masked_static_frames,
+        FieldInfo{"A feature inside the mask counts as static after this many consecutive residuals r_k "
+                  "below 1 px, and is "
+                  "used while few others are stable; 0 = never; not in the paper.",
+                  "frames", 0, 1000});
   field(
       "gate_before_solve", config.gate_before_solve,
       FieldInfo{

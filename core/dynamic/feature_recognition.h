@@ -17,8 +17,14 @@ namespace stillpoint {
 ///
 /// A feature inside the mask is dynamic. A feature labeled dynamic, by the mask or by its motion, remains
 /// dynamic after it leaves the mask until the consistency check recycles it (Sec. III-C: "historical dynamic
-/// feature"; III-E: "recycled"). A feature inside the mask is never recycled, so that a sitting person
+/// feature"; III-E: "recycled"). A feature inside the mask is not recycled, so that a sitting person
 /// remains excluded from the estimate.
+///
+/// Not in the paper: with `masked_static_frames` = n > 0, features inside the mask with r_k <= 1 px in their
+/// last n residuals are relabeled as stable, the oldest first, while less than three quarters of all features
+/// are stable, so that a wrong box over much of the image costs little. While the mask excludes a feature,
+/// the poses do not depend on it, and its residuals are independent evidence. The label history is not
+/// affected.
 ///
 /// Call order for each frame: `classify`, `gate` if the predicted pose is checked, `check` after the solve.
 /// Each returns the labels of all features of the frame, by ascending id, valid until the next call.
@@ -50,13 +56,15 @@ class FeatureRecognition {
   struct Feature {
     DynamicLabel label;
     bool inside_mask = false;
-    int static_frames = 0;  ///< consecutive, outside the mask, with r_k <= 1 px or without r_k
+    int static_frames = 0;     ///< consecutive, outside the mask, with r_k <= 1 px or without r_k
+    int static_residuals = 0;  ///< consecutive residuals r_k <= 1 px, inside or outside the mask
   };
 
   [[nodiscard]] bool is_inside(const TrackedFeature& feature, const DepthView& depth,
                                const SemanticMask& mask) const;
   static void recycle(Feature& feature, LabelReason reason = LabelReason::kRecycled);
   void collect_labels();
+  void readmit_masked();
 
   DynamicConfig config_;
   std::vector<Feature> features_;       ///< by ascending id

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string_view>
+#include <vector>
+
 namespace stillpoint {
 namespace {
 
@@ -169,6 +173,51 @@ TEST(FeatureRecognition, CheckDoesNotRecycleInsideTheMask) {
   FeatureRecognition recognition{config()};
   static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
   expect_label(check_one(recognition, 0.0, 10), LabelClass::kDynamicObject, LabelReason::kInsideMask);
+}
+
+/// Labels of feature 1, inside the mask, before the check of each frame; `others` features are outside.
+std::vector<std::string_view> labels_inside_the_mask(const DynamicConfig& with_evidence,
+                                                     const std::vector<std::optional<double>>& residuals_px,
+                                                     int others = 0) {
+  FeatureRecognition recognition{with_evidence};
+  std::vector<TrackedFeature> features = {feature(1, kInBox, 2.0)};
+  for (int id = 2; id < 2 + others; ++id) features.push_back(feature(id, kOutside, 2.0));
+  std::vector<std::string_view> labels;
+  for (const std::optional<double>& residual_px : residuals_px) {
+    labels.push_back(label_name(recognition.classify(frame_with(features), person_at_2m()).at(0).label));
+    std::vector<ConsistencyResidual> residuals;
+    if (residual_px) residuals.push_back({.id = 1, .mean_px = *residual_px, .pair_count = 4});
+    static_cast<void>(recognition.check(residuals));
+  }
+  return labels;
+}
+
+DynamicConfig with_masked_static_frames(int frames) {
+  DynamicConfig with_evidence = config();
+  with_evidence.masked_static_frames = frames;
+  return with_evidence;
+}
+
+TEST(FeatureRecognition, ReadmitsInsideTheMaskAfterEnoughSmallResiduals) {
+  // 1.1 px starts the count anew; a frame without a residual does not change it.
+  std::vector<std::string_view> expected(9, "dynamic_object");
+  expected[6] = expected[7] = "stable";  // after the residuals of frames 2, 4 and 5 (from 0)
+  EXPECT_EQ(labels_inside_the_mask(with_masked_static_frames(3),
+                                   {0.9, 1.1, 0.9, std::nullopt, 0.9, 0.9, 0.9, 1.1, 0.9}, 1),
+            expected);
+}
+
+TEST(FeatureRecognition, ReadmitsNoneInsideTheMaskWhileThreeQuartersAreStable) {
+  const std::vector<std::optional<double>> residuals_px(10, 0.0);
+  const std::vector<std::string_view> excluded(10, "dynamic_object");
+  EXPECT_NE(labels_inside_the_mask(with_masked_static_frames(3), residuals_px, 2), excluded);  // 2 of 3
+  EXPECT_EQ(labels_inside_the_mask(with_masked_static_frames(3), residuals_px, 3), excluded);  // 3 of 4
+}
+
+TEST(FeatureRecognition, TheMaskOfThePaperIgnoresResiduals) {
+  const std::vector<std::optional<double>> residuals_px(100, 0.0);
+  EXPECT_EQ(labels_inside_the_mask(config(), residuals_px),
+            std::vector<std::string_view>(100, "dynamic_object"));
 }
 
 TEST(FeatureRecognition, CheckDoesNotChangeFeaturesWithoutResidual) {
