@@ -221,7 +221,10 @@ bool Estimator::refine() {
 
 void Estimator::check_data() {
   const std::optional<UncertainPose> camera = predicted_camera();
-  Expectation expected{.before = newest_, .camera = camera, .residual_sigma = window_.residual_sigma()};
+  Expectation expected{.before = newest_,
+                       .camera = camera,
+                       .residual_sigma = window_.residual_sigma(),
+                       .white_sigma = window_.white_sigma()};
   if (monitor_.has_unexpected_features(expected, window())) {
     window_.expect_errors();
     expected.residual_sigma = window_.residual_sigma();

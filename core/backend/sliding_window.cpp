@@ -164,4 +164,6 @@ void SlidingWindow::slide() {
 
 double SlidingWindow::residual_sigma() const { return pixel_noise_.sigma_px() / rig_.camera.focal_px(); }
 
+double SlidingWindow::white_sigma() const { return pixel_noise_.white_px() / rig_.camera.focal_px(); }
+
 }  // namespace stillpoint

@@ -104,6 +104,8 @@ class SlidingWindow {
 
   /// Standard deviation of a reprojection residual [normalized image plane].
   [[nodiscard]] double residual_sigma() const;
+  /// Same of its change between successive frames, see `PixelNoise::white_px`.
+  [[nodiscard]] double white_sigma() const;
   /// The newest features are not where they were predicted, see `PixelNoise`.
   void expect_errors() { pixel_noise_.expect_errors(); }
 

@@ -24,9 +24,12 @@ namespace stillpoint {
 /// other frame. It follows by a factor of e per second at most. It rises faster than it falls: noise that
 /// is too small makes the estimate worse than vision alone, noise that is too large costs little.
 ///
-/// m = 0.6 is what exact sensors show, a quarter of the median of the chi-square distribution with three
-/// degrees of freedom (NIS 0.2 to 0.3 on renderings): S is larger than the covariance of v, presumably
-/// because both poses share the positions of the points.
+/// m = 2.37 is the median of the chi-square distribution with three degrees of freedom.
+///
+/// The errors of the positions of the points are common to the pose by vision and to that of the frame
+/// before, from which the prediction starts: they are not part of v. Of the errors of the bearings only the
+/// part that changes from frame to frame is (s_w of PixelNoise); with the whole error, S would be four times
+/// as large on renderings.
 ///
 /// An innovation that vision claims too small is attributed to the inertial sensors, too: f is the noise that
 /// is consistent with vision, and an upper bound of that of the sensor.
@@ -36,7 +39,8 @@ class InertialNoise {
   explicit InertialNoise(const ImuNoise& stated) : stated_(stated) {}
 
   /// @param predicted pose by inertial data
-  /// @param visual    pose of the same frame by vision alone
+  /// @param visual    pose of the same frame by vision alone, with the covariance of the white noise of its
+  ///   bearings
   /// @param dt_s      since the frame before, > 0; more than 0.1 s counts as 0.1 s
   void observe(const UncertainPose& predicted, const UncertainPose& visual, double dt_s);
 

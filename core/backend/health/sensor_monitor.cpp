@@ -81,14 +81,11 @@ bool SensorMonitor::has_unexpected_features(const Expectation& expected, const W
   return innovations_.reprojection > kMonitor.innovation.unexpected;
 }
 
-void SensorMonitor::compare_with_prediction(const Expectation& expected, const Pose& T_w_c, Timestamp t) {
+void SensorMonitor::compare_with_prediction(const Expectation& expected, const UncertainPose& visual,
+                                            Timestamp t) {
   if (!expected.camera) return;
-  const double inlier_scale = kMonitor.vision.pose_inlier_px / rig_.camera.focal_px();
-  const std::optional<UncertainPose> visual =
-      with_covariance(known_points_, T_w_c, expected.residual_sigma, inlier_scale);
-  if (!visual) return;
-  innovations_.inertial = inertial_nis(*expected.camera, *visual);
-  if (imu_.adapt_noise) noise_.observe(*expected.camera, *visual, seconds_between(expected.before.t, t));
+  innovations_.inertial = inertial_nis(*expected.camera, visual);
+  if (imu_.adapt_noise) noise_.observe(*expected.camera, visual, seconds_between(expected.before.t, t));
 }
 
 bool SensorMonitor::is_refuted(const Window& window, const Pose& predicted, const Pose& T_w_c) {
@@ -109,14 +106,16 @@ void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& 
   const double focal_px = rig_.camera.focal_px();
   const Pose predicted = product(newest.state.T_w_b, window.T_b_c);
   const Pose T_w_c = refine_camera_pose(known_points_, predicted, kMonitor.vision.pose_inlier_px / focal_px);
-  const VisionAssessment vision = assess_vision(
-      known_points_, T_w_c, kMonitor.vision.pose_inlier_px / kMonitor.vision.inlier_sigmas / focal_px);
+  const double inlier_sigma = kMonitor.vision.pose_inlier_px / kMonitor.vision.inlier_sigmas / focal_px;
+  const VisionAssessment vision = assess_vision(known_points_, T_w_c, inlier_sigma);
   if (!vision.may_contradict_imu(evidence_.features)) {
     if (!vision.is_located(false)) inertial_.interrupt(newest.state.t);
     return;
   }
   if (is_refuted(window, predicted, T_w_c)) return;
-  compare_with_prediction(expected, T_w_c, newest.state.t);
+  compare_with_prediction(expected,
+                          {T_w_c, std::pow(expected.white_sigma / inlier_sigma, 2) * vision.covariance},
+                          newest.state.t);
   const bool was_consistent = inertial_.is_consistent();
   const Pose T_c_b = window.T_b_c.inverse();
   const VisualPose pose{.t = after(newest.state.t, newest.time_offset_s),

@@ -24,6 +24,7 @@ struct Expectation {
   const NavState& before;                      ///< last reported state, with its biases
   const std::optional<UncertainPose>& camera;  ///< pose of the camera by reliable inertial data
   double residual_sigma;                       ///< of a bearing [normalized image plane]
+  double white_sigma;                          ///< of its change between successive frames
 };
 
 /// Collects the evidence about a frame in the order of the functions below, and decides about its status
@@ -115,8 +116,8 @@ class SensorMonitor {
 
  private:
   void assess_newest(const Window& window);
-  /// Innovation of the pose T_w_c by vision alone, from `known_points_`, of the frame at `t`.
-  void compare_with_prediction(const Expectation& expected, const Pose& T_w_c, Timestamp t);
+  /// Innovation of the camera pose by vision alone, of the frame at `t`.
+  void compare_with_prediction(const Expectation& expected, const UncertainPose& visual, Timestamp t);
   /// Whether old points contradict the pose T_w_c by vision alone: they agree better with the predicted one.
   /// The newer ones, by which it was found, are on a person who came before the camera.
   [[nodiscard]] bool is_refuted(const Window& window, const Pose& predicted, const Pose& T_w_c);

@@ -54,9 +54,11 @@ std::optional<ReprojectionVariance> ReprojectionErrorMonitor::measure(const Wind
 }
 
 void PixelNoise::observe(const ReprojectionVariance& variance) {
-  const double sigma_px =
-      scale_ * std::sqrt(variance.white_px2 + kObservationsPerTrack * variance.correlated_px2);
-  sigma_px_ += kSmoothing * (std::clamp(sigma_px, kMinSigma_px, kMaxSigma_px) - sigma_px_);
+  const auto follow = [](double observed_px, double& sigma_px) {
+    sigma_px += kSmoothing * (std::clamp(observed_px, kMinSigma_px, kMaxSigma_px) - sigma_px);
+  };
+  follow(scale_ * std::sqrt(variance.white_px2 + kObservationsPerTrack * variance.correlated_px2), sigma_px_);
+  follow(std::sqrt(variance.white_px2), white_px_);
 }
 
 BackendConfig PixelNoise::applied_to(BackendConfig config) const {

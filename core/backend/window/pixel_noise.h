@@ -43,15 +43,16 @@ class ReprojectionErrorMonitor {
 ///
 ///   s <- s + 0.1 (c sqrt(w + K m) - s),    K = 6,    0.09 px <= c sqrt(w + K m) <= 9 px,
 ///
-/// with c = `BackendConfig::pixel_noise_scale`.
+/// with c = `BackendConfig::pixel_noise_scale`; likewise the white part s_w of the noise, with sqrt(w) in
+/// place of c sqrt(w + K m).
 class PixelNoise {
  public:
   /// @param nominal_px s before the first observation
   /// @param scale      c; 0 = s is constant
   PixelNoise(double nominal_px, double scale)
-      : nominal_px_(nominal_px), scale_(scale), sigma_px_(nominal_px) {}
+      : nominal_px_(nominal_px), scale_(scale), sigma_px_(nominal_px), white_px_(nominal_px) {}
 
-  /// Updates s after a solve.
+  /// Updates s and s_w after a solve.
   void observe(const ReprojectionVariance& variance);
 
   /// The newest features are not where they were predicted: something is not as it was when their errors were
@@ -60,11 +61,13 @@ class PixelNoise {
 
   [[nodiscard]] bool is_constant() const { return scale_ == 0.0; }
   [[nodiscard]] double sigma_px() const { return sigma_px_; }
+  /// s_w: of the change of an error between successive frames.
+  [[nodiscard]] double white_px() const { return white_px_; }
   /// The configuration with s as `pixel_sigma_px`.
   [[nodiscard]] BackendConfig applied_to(BackendConfig config) const;
 
  private:
-  double nominal_px_, scale_, sigma_px_;
+  double nominal_px_, scale_, sigma_px_, white_px_;
 };
 
 }  // namespace stillpoint

@@ -13,8 +13,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kInnovations_hz = 30.0;
-constexpr double kClaimedSigma = 2e-3;
-constexpr double kInnovationSigma = 1e-3;  ///< of exact sensors: S is four times as large, see InertialNoise
+constexpr double kInnovationSigma = 1e-3;  ///< of exact sensors
 const ImuNoise kStatedNoise{.gyro_noise = 1e-3, .accel_noise = 1e-2, .gyro_walk = 1e-5, .accel_walk = 1e-4};
 
 /// Frames whose innovations have `gyro` and `accel` times the standard deviation that the densities state;
@@ -26,8 +25,8 @@ void observe_innovations(InertialNoise& noise, double gyro, double accel, double
   for (int i = 0; i < seconds * kInnovations_hz; ++i) {
     UncertainPose predicted;
     predicted.covariance.diagonal() << Eigen::Vector3d::Constant(
-        std::pow(kClaimedSigma * noise.factors().accel, 2)),
-        Eigen::Vector3d::Constant(std::pow(kClaimedSigma * noise.factors().gyro, 2));
+        std::pow(kInnovationSigma * noise.factors().accel, 2)),
+        Eigen::Vector3d::Constant(std::pow(kInnovationSigma * noise.factors().gyro, 2));
     const UncertainPose visual{.T_w_f = {exp_so3(gyro * sample()), accel * sample()}};
     noise.observe(predicted, visual, 1.0 / kInnovations_hz);
   }

@@ -75,6 +75,13 @@ TEST(PixelNoise, CountsModelErrorSixTimes) {
   EXPECT_NEAR(settled_sigma_px({.white_px2 = 0.5}, 4.0), 4.0 * std::sqrt(0.5), 1e-6);
 }
 
+TEST(PixelNoise, OfTheChangesIsThatOfTheWhitePart) {
+  PixelNoise noise(0.25, 4.0);
+  EXPECT_EQ(noise.white_px(), 0.25);
+  for (int i = 0; i < 200; ++i) noise.observe({.white_px2 = 0.5, .correlated_px2 = 0.2});
+  EXPECT_NEAR(noise.white_px(), std::sqrt(0.5), 1e-6);
+}
+
 TEST(PixelNoise, IsBounded) {
   EXPECT_NEAR(settled_sigma_px({.white_px2 = 1e-6}, 1.0), 0.09, 1e-6);
   EXPECT_NEAR(settled_sigma_px({.white_px2 = 1e4}, 1.0), 9.0, 1e-6);
