@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "bench/config/spelling.h"
@@ -14,6 +15,25 @@ namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Renders all frames into `folder`, and those of an uninterrupted rendering into the frame cache, too.
+/// @return false if stopped by `control`
+bool render_all(synth::SequenceRendering& rendering, const fs::path& folder, synth::RenderControl control,
+                const std::optional<datasets::FrameCacheOptions>& frame_cache) {
+  const std::size_t count = rendering.frame_count();
+  if (!frame_cache) return synth::render_frames(rendering, count, control);
+  datasets::FrameCacheFill fill(*frame_cache, folder.filename().string());
+  control.on_images = [&fill](std::size_t index, const cv::Mat& color, const cv::Mat& depth) {
+    fill.add(index, color, depth);
+  };
+  if (!synth::render_frames(rendering, count, control)) return false;
+  if (fill.frames() == 0) return true;
+  FaultLog strict;
+  const datasets::SequenceContent content = datasets::read_sequence(folder, {}, strict);
+  // Otherwise an earlier rendering was continued, and the first run decodes the images.
+  if (fill.frames() == content.frame_files.size()) fill.finish(content);
+  return true;
+}
 
 /// A sequence of the cache that is not complete: `load_frame` renders what is missing.
 class RenderedStream final : public datasets::SensorStream {
@@ -37,6 +57,12 @@ class RenderedStream final : public datasets::SensorStream {
     if (!synth::render_frames(rendering_, count, control)) return false;
     for (std::size_t i = 0; i < count; ++i) set_boxes(i);
     return true;
+  }
+
+  /// Renders all frames into `folder`, as `render_all`.
+  [[nodiscard]] bool complete(const fs::path& folder, const synth::RenderControl& control,
+                              const std::optional<datasets::FrameCacheOptions>& frame_cache) {
+    return render_all(rendering_, folder, control, frame_cache);
   }
 
   [[nodiscard]] const datasets::SequenceInfo& info() const override { return info_; }
@@ -77,18 +103,10 @@ class RenderedStream final : public datasets::SensorStream {
 
 fs::path rendered_sequence(const synth::SynthRequest& request, synth::RenderControl control,
                            const std::optional<datasets::FrameCacheOptions>& frame_cache) {
-  if (!frame_cache) return synth::cached_sequence(request, control);
-  datasets::FrameCacheFill fill(*frame_cache, request.preset + "_" + std::to_string(request.seed));
-  control.on_images = [&fill](std::size_t index, const cv::Mat& color, const cv::Mat& depth) {
-    fill.add(index, color, depth);
-  };
-  fs::path folder = synth::cached_sequence(request, control);
-  if (folder.empty() || fill.frames() == 0) return folder;
-  FaultLog strict;
-  const datasets::SequenceContent content = datasets::read_sequence(folder, {}, strict);
-  // Otherwise an earlier rendering was continued, and the first run decodes the images.
-  if (fill.frames() == content.frame_files.size()) fill.finish(content);
-  return folder;
+  fs::path folder = synth::sequence_cache_folder(request);
+  if (synth::is_complete_sequence(folder)) return folder;
+  synth::SequenceRendering rendering(request, folder);
+  return render_all(rendering, folder, std::move(control), frame_cache) ? folder : fs::path();
 }
 
 std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
@@ -111,9 +129,11 @@ std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
       const std::vector<Timestamp>& times = stream->info().frame_times;
       const std::size_t count = part.when_loaded ? 0 : part.frames(times);
       if (count < times.size()) return stream->render(count, control) ? std::move(stream) : nullptr;
+      // All frames: also into the frame cache, so that a run in real time decodes nothing.
+      if (!stream->complete(folder, control, options.frame_cache)) return nullptr;
+    } else if (rendered_sequence(request, control, options.frame_cache).empty()) {
+      return nullptr;
     }
-    // All frames: also into the frame cache, so that a run in real time decodes nothing.
-    if (rendered_sequence(request, control, options.frame_cache).empty()) return nullptr;
   }
   return datasets::open_sequence(folder, identified);
 }
