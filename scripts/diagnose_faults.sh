@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Plants single faults in sequences of the OpenLORIS layout (`stillpoint data synth`), and writes how `diagnose` ranks
 # them: CSV with the columns sequence, fault, expected, rank (0: not found), effect, found, seconds. Faults that
-# `--fault` has are injected; others are changes of copies of the files.
+# `--fault` has are injected; others are changes of copies of the files. Two faults at once, NAME+NAME in PAIRS (their
+# list, with blanks; instead of the single ones), have the rank of the later one.
 #   scripts/diagnose_faults.sh PROGRAM TABLE.csv SEQUENCE...        BUDGET (30s) and FAULTS (regular expression, all)
 set -euo pipefail
 program="$1" table="$2"
@@ -31,6 +32,7 @@ distortion_error | distortion | distortion_error:amount=0.08
 rotation_error | extrinsics_rotation | rotation_error:amount=6
 depth_scaled | depth_scale | depth_scaled:amount=0.85,start=0,duration=1000
 time_offset | time_offset | time_offset:amount=0.03,start=0,duration=1000
+clock_drift | clock_drift | clock_drift:amount=5000,start=0,duration=1000
 imu_noise | imu_noise | imu_noise:amount=20
 imu_vibration | imu_noise | imu_vibration:amount=3
 imu_gap | imu_gap | imu_gap:start=3,duration=1
@@ -44,11 +46,24 @@ dropped | dropped | dropped:start=3,duration=1.5
 exposure | exposure | exposure:amount=0.05,start=3,duration=2
 motion_blur | blur | motion_blur:amount=31,start=3,duration=2
 exposure_steps | exposure_steps | exposure_steps:amount=2
+depth_late | depth_late | depth_previous:start=0,duration=1000
+depth_shift | depth_unregistered | depth_shift:amount=8,start=0,duration=1000
 depth_missing | depth_missing | depth_missing:start=3,duration=2
 depth_holes | depth_holes | depth_holes:amount=0.8,start=3,duration=3
 detector_silent | boxes_missing | detector_silent:start=0,duration=1000
 detector_hallucinating | boxes | detector_hallucinating:amount=6,start=0,duration=1000
 '
+
+if [[ -n "${PAIRS:-}" ]]; then
+  pairs=''
+  for pair in $PAIRS; do # the first one may be a change of files
+    row="$(awk -F' [|] ?' -v first="${pair%%+*}" -v second="${pair##*+}" '
+      $1 == first { id1 = $2; how1 = $3 } $1 == second { id2 = $2; how2 = $3 }
+      END { printf "%s+%s | %s+%s | %s;%s", first, second, id1, id2, how1, how2 }' <<<"$faults")"
+    pairs+="$row"$'\n'
+  done
+  faults="$pairs"
+fi
 
 changed_copy() { # SEQUENCE FAULT FOLDER: the files of the sequence by links, and those with the fault
   local sequence="$1" fault="$2" folder="$3" file
@@ -88,12 +103,14 @@ for sequence in "$@"; do
     fault="${fault// /}" expected="${expected// /}" how="${how// /}"
     [[ -n "$fault" && "$fault" =~ ${FAULTS:-.} ]] || continue
     folder="$sequence" options=()
-    if [[ "$how" == file ]]; then
-      folder="$work/$fault"
-      changed_copy "$sequence" "$fault" "$folder"
-    elif [[ -n "$how" ]]; then
-      options=(--fault "$how")
-    fi
+    for change in ${how//;/ }; do
+      if [[ "$change" == file ]]; then
+        folder="$work/$fault"
+        changed_copy "$sequence" "${fault%%+*}" "$folder"
+      else
+        options+=(--fault "$change")
+      fi
+    done
     begin=$SECONDS
     "$program" diagnose "$folder" --json --budget "${BUDGET:-30s}" --length 10 "${options[@]}" >"$work/out.json" 2>"$work/err" || true
     # Causes with an effect first, then those with less effect, then those that were not measured.
@@ -102,10 +119,13 @@ for sequence in "$@"; do
       /"error_ratio":/ { gsub(/,/, "", $2); ratio[n] = $2 }
       /"less_effect":/ { effective = n }
       END {
+        wanted = split(expected, causes, "+")
         for (i = 1; i <= n; ++i) {
           found = found (i > 1 ? " " : "") ids[i] (i <= effective ? "*" : "")
-          if (ids[i] == expected && !rank) { rank = i; effect = ratio[i] }
+          for (k = 1; k <= wanted; ++k)
+            if (ids[i] == causes[k]) { named++; rank = i; effect = ratio[i]; causes[k] = "" }
         }
+        if (named < wanted) rank = 0
         printf "%s,%s,%s,%d,%s,%s,%d\n", sequence, fault, expected, rank,
           effect == "" || effect == "null" ? "" : sprintf("%+.0f", 100 * (effect - 1)), found, seconds
       }' "$work/out.json" | tee -a "$table"

@@ -15,6 +15,17 @@ cv::Mat mirrored_image(const cv::Mat& image) {
   return result;
 }
 
+/// Pixel p of the result is pixel p + shift; 0 where that is outside.
+cv::Mat shifted_depth(const cv::Mat& depth, const Eigen::Vector2i& shift_px) {
+  if (depth.empty()) return {};
+  cv::Mat result = cv::Mat::zeros(depth.size(), depth.type());
+  const cv::Rect image(0, 0, depth.cols, depth.rows),
+      moved(shift_px.x(), shift_px.y(), depth.cols, depth.rows);
+  const cv::Rect source = image & moved;
+  if (!source.empty()) depth(source).copyTo(result(cv::Rect(source.tl() - moved.tl(), source.size())));
+  return result;
+}
+
 void mirror(datasets::SequenceInfo& info) {
   const double last_px = info.rig.camera.width - 1.0;
   info.rig.camera.cx = last_px - info.rig.camera.cx;
@@ -42,6 +53,7 @@ class CorrectedPart final : public datasets::SensorStream {
       if (correction.change) correction.change(info_);
       depth_factor_ *= correction.depth_factor;
       depth_delay_ += correction.depth_delay;
+      depth_shift_px_ += correction.depth_shift_px;
       if (correction.mirrored) {
         mirrored_ = !mirrored_;
         mirror(info_);
@@ -55,6 +67,7 @@ class CorrectedPart final : public datasets::SensorStream {
   [[nodiscard]] Frame load_frame(std::size_t index) const override {
     Frame frame = stream_.load_frame(first_ + index);
     if (depth_delay_ != 0) frame.depth = stream_.load_frame(depth_index(first_ + index)).depth;
+    if (!depth_shift_px_.isZero()) frame.depth = shifted_depth(frame.depth, depth_shift_px_);
     frame.id = static_cast<std::int64_t>(index);
     frame.t = info_.frame_times.at(index);
     frame.depth_units_per_m /= depth_factor_;
@@ -85,6 +98,7 @@ class CorrectedPart final : public datasets::SensorStream {
   datasets::SequenceInfo info_;
   double depth_factor_ = 1.0;
   int depth_delay_ = 0;
+  Eigen::Vector2i depth_shift_px_ = Eigen::Vector2i::Zero();
   bool mirrored_ = false;
 };
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "datasets/sensor_stream.h"
 
 namespace stillpoint::bench {
@@ -17,9 +19,11 @@ namespace stillpoint::bench {
 struct Correction {
   /// Changes calibration, inertial samples, stamps (not the number of frames) or ground truth; may be empty.
   std::function<void(datasets::SequenceInfo&)> change{};
-  double depth_factor = 1.0;            ///< true depth = factor * recorded depth
-  bool mirrored = false;                ///< images, depth and boxes are mirrored left to right
-  int depth_delay = 0;                  ///< depth of frame i was recorded with frame i + delay
+  double depth_factor = 1.0;  ///< true depth = factor * recorded depth
+  bool mirrored = false;      ///< images, depth and boxes are mirrored left to right
+  int depth_delay = 0;        ///< the depth for frame i is that of frame i + delay
+  /// The depth for pixel p is that of pixel p + shift.
+  Eigen::Vector2i depth_shift_px = Eigen::Vector2i::Zero();
   std::vector<std::string> settings{};  ///< of the configuration: "key=value"
 };
 

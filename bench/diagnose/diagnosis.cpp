@@ -2,6 +2,7 @@
 #include "bench/diagnose/diagnosis.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/diagnose/evidence/depth_alignment.h"
 #include "bench/diagnose/image_causes.h"
 #include "bench/diagnose/inertial_causes.h"
 #include "bench/diagnose/run_causes.h"
@@ -21,6 +23,7 @@ constexpr double kLeastEffect = 0.1;     ///< reduction of the error that counts
 constexpr double kChance = 2.5;          ///< standard deviations of the logarithm of an error by chance
 constexpr double kLargeEffect = 0.5;     ///< ratio of errors that is an effect if all runs show it
 constexpr double kTrialsPerRound = 3.0;  ///< at least: without changes, without IMU, with one correction
+constexpr double kFirstTrial = 0.25;     ///< of the budget: leaves time for those of a round
 constexpr std::size_t kMaxRounds = 3;    ///< number of faults at once
 
 constexpr std::size_t kLeastFrames = 30;
@@ -50,11 +53,12 @@ class Diagnoser {
       : stream_(stream),
         options_(options),
         start_(std::chrono::steady_clock::now()),
-        request_(request_of(stream, options)) {
+        request_(request_of(stream, options)),
+        deadline_s_(kFirstTrial * options.budget_s) {
+    request_.stop_requested = [this] { return stopped() || elapsed_s() > deadline_s_; };
     const std::vector<Timestamp>& times = stream.info().frame_times;
     diagnosis_.sequence = stream.info().name;
-    diagnosis_.frames = request_.part.count;
-    diagnosis_.seconds = seconds_between(times.front(), times[request_.part.count - 1]);
+    planned_s_ = seconds_between(times.front(), times[request_.part.count - 1]);
     diagnosis_.measure = request_.measure;
   }
 
@@ -63,14 +67,21 @@ class Diagnoser {
       if (!find_next(round)) break;
     }
     std::ranges::stable_sort(diagnosis_.causes, {}, [](const Cause& cause) { return *cause.error_ratio; });
+    diagnosis_.frames = request_.part.count;
+    diagnosis_.seconds = part_s();
+    const auto waiting = std::ranges::count_if(
+        diagnosis_.unmeasured, [](const Cause& cause) { return cause.correction.has_value(); });
+    if (spent_ && waiting > 0) leave_out(fmt::format("the effects of {} candidate(s)", waiting));
     diagnosis_.interrupted = stopped();
     diagnosis_.least_effect = 1.0 - effective_ratio();
     return std::move(diagnosis_);
   }
 
  private:
+  /// By the user.
   [[nodiscard]] bool stopped() const { return options_.stop_requested && options_.stop_requested(); }
   [[nodiscard]] double elapsed_s() const {
+    if (options_.elapsed_s) return options_.elapsed_s();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   void announce(const std::string& step) const {
@@ -86,12 +97,52 @@ class Diagnoser {
     return std::clamp(std::exp(-kChance * sigma), kLargeEffect, 1.0 - kLeastEffect);
   }
 
-  [[nodiscard]] Trial trial_with(const std::vector<Correction>& corrections) {
+  [[nodiscard]] double part_s() const {
+    const std::vector<Timestamp>& times = stream_.info().frame_times;
+    return seconds_between(times.front(), times[request_.part.count - 1]);
+  }
+  /// An interruption is reported as such.
+  void leave_out(std::string what) {
+    if (!stopped()) diagnosis_.left_out.push_back(std::move(what));
+  }
+
+  /// Whether the budget suffices for a number of trials, by those before.
+  [[nodiscard]] bool affords(double trials) const {
+    const double mean_s = diagnosis_.trials > 0 ? trials_s_ / diagnosis_.trials : 0.0;
+    return elapsed_s() + trials * mean_s <= options_.budget_s;
+  }
+
+  /// @return nullopt if it was stopped
+  [[nodiscard]] std::optional<Trial> trial_with(const std::vector<Correction>& corrections) {
     const double begin_s = elapsed_s();
     Trial trial = run_trial(stream_, request_, corrections);
-    trial_s_ = std::max(trial_s_, elapsed_s() - begin_s);
+    if (trial.frames < request_.part.count) return std::nullopt;
+    count(trial, elapsed_s() - begin_s);
+    return trial;
+  }
+
+  void count(const Trial& trial, double duration_s) {
+    trials_s_ += duration_s;
     differences_.push_back(trial.difference);
     ++diagnosis_.trials;
+  }
+
+  /// The trial without changes. If it reaches its share of the budget, the part ends there.
+  /// @throws InputError if that is too short a part
+  [[nodiscard]] Trial first_trial() {
+    const double begin_s = elapsed_s();
+    Trial trial = run_trial(stream_, request_, {});
+    deadline_s_ = options_.budget_s;
+    if (trial.frames < request_.part.count && !stopped()) {
+      if (trial.frames < kLeastFrames)
+        throw InputError("--budget",
+                         fmt::format("{:.3g} s are too little: a quarter suffices for {} frames, a "
+                                     "diagnosis requires {}; increase it",
+                                     options_.budget_s, trial.frames, kLeastFrames));
+      request_.part.count = trial.frames;
+      leave_out(fmt::format("{:.1f} of {:.1f} s of the recording", planned_s_ - part_s(), planned_s_));
+    }
+    count(trial, elapsed_s() - begin_s);
     return trial;
   }
 
@@ -100,12 +151,22 @@ class Diagnoser {
     const auto part = corrected_part(stream_, request_.part, kept_);
     announce("comparing images with other sensors");
     const Trajectory visual = visual_trajectory(stream_, request_, kept_);
-    const RecordingSurvey survey = survey_recording(*part, visual, options_.stop_requested);
+    const RecordingSurvey survey = survey_recording(*part, visual, request_.stop_requested);
+    const std::optional<DepthAlignment> alignment = align_depth(*part, request_.stop_requested);
+    std::vector<Cause> all = run_causes(baseline.run, part->info());
+    if (request_.stop_requested()) {  // what is missing would look like a fault
+      leave_out("the comparison of images with other sensors");
+      spent_ = true;
+      return all;
+    }
     const TruthReport truth = truth_report(part->info(), survey, visual);
-    std::vector<Cause> all;
     for (const auto& more : {inertial_causes(part->info(), survey), image_causes(part->info(), survey),
-                             run_causes(baseline.run, part->info()), truth_causes(truth, part->info())})
+                             truth_causes(truth, part->info())})
       all.insert(all.end(), more.begin(), more.end());
+    if (alignment) {
+      const std::vector<Cause> more = alignment_causes(*alignment);
+      all.insert(all.end(), more.begin(), more.end());
+    }
     std::ranges::stable_sort(all, std::ranges::greater{}, &Cause::strength);
     // With wrong units or axes, the other differences are their consequences.
     if (!all.empty() && all.front().strength >= kFundamental)
@@ -119,18 +180,23 @@ class Diagnoser {
 
   /// Measures the effects of all candidates. @return whether a correction was kept
   bool find_next(std::size_t round) {
-    if (round > 0 && elapsed_s() + kTrialsPerRound * trial_s_ > options_.budget_s) {
-      diagnosis_.out_of_budget = true;
+    announce(fmt::format("running on {} frames", request_.part.count));
+    std::optional<Trial> baseline;
+    if (round == 0) {
+      baseline = first_trial();
+      diagnosis_.error = baseline->error;
+    } else if (affords(kTrialsPerRound)) {
+      baseline = trial_with(kept_);
+    }
+    if (!baseline) {
+      leave_out("the search for causes besides those above");
       return false;
     }
-    announce(fmt::format("running on {} frames", request_.part.count));
-    const Trial baseline = trial_with(kept_);
-    if (round == 0) diagnosis_.error = baseline.error;
-    diagnosis_.corrected = baseline.error;
-    std::vector<Cause> found = candidates(baseline.result);
+    diagnosis_.corrected = baseline->error;
+    std::vector<Cause> found = candidates(baseline->result);
     for (std::size_t i = 0; i < found.size() && !stopped(); ++i) {
       announce(fmt::format("candidate {} of {}: {}", i + 1, found.size(), found[i].name));
-      measure(found[i], baseline);
+      measure(found[i], *baseline);
     }
     return keep_best(std::move(found));
   }
@@ -141,15 +207,17 @@ class Diagnoser {
       cause.consistent = cause.error_ratio && is_exceptional(cause, baseline.result);
       return;
     }
-    if (measured_ && elapsed_s() + trial_s_ > options_.budget_s) return;
-    measured_ = true;
     std::vector<Correction> corrections = kept_;
     corrections.push_back(*cause.correction);
-    const Trial trial = trial_with(corrections);
-    cause.error_ratio = trial.error / baseline.error;
+    const std::optional<Trial> trial = affords(1.0) ? trial_with(corrections) : std::nullopt;
+    if (!trial) {
+      spent_ = true;
+      return;
+    }
+    cause.error_ratio = trial->error / baseline.error;
     // Each run with the correction has a smaller error than each one without.
     cause.consistent =
-        std::log(*cause.error_ratio) < -0.5 * (std::abs(trial.difference) + std::abs(baseline.difference));
+        std::log(*cause.error_ratio) < -0.5 * (std::abs(trial->difference) + std::abs(baseline.difference));
   }
 
   /// Whether the errors at the times of a cause are larger than at the same times moved within the recording:
@@ -208,8 +276,10 @@ class Diagnoser {
   Diagnosis diagnosis_;
   std::vector<Correction> kept_;
   std::vector<double> differences_;  ///< of the pairs of runs of all trials
-  bool measured_ = false;            ///< the effect of a candidate
-  double trial_s_ = 0.0;             ///< longest time of a trial
+  bool spent_ = false;               ///< the budget, before all candidates were measured
+  double trials_s_ = 0.0;            ///< time of all trials
+  double planned_s_ = 0.0;           ///< duration of the part before it was shortened
+  std::atomic<double> deadline_s_;   ///< of what is being done; read by the runs of a trial
 };
 
 }  // namespace

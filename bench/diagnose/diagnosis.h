@@ -19,9 +19,12 @@ namespace stillpoint::bench {
 
 struct DiagnosisOptions {
   ConfigRequest config;
-  double budget_s = 60.0;  ///< no trial starts that would end later, by the time of those before
-  double length_s = 15.0;  ///< of the part of the recording, from its start
-  std::function<bool()> stop_requested{};
+  /// A trial that would end later, by the mean time of those before, is left out, and one that does is
+  /// stopped and discarded. If the first trial takes more than a quarter, the part is cut to what it reached.
+  double budget_s = 60.0;
+  std::function<double()> elapsed_s{};     ///< of the budget; thread-safe; empty: since the call
+  double length_s = 15.0;                  ///< of the part of the recording, from its start
+  std::function<bool()> stop_requested{};  ///< thread-safe; may be empty
   std::function<void(const std::string& step)> on_step{};  ///< what is being done; may be empty
 };
 
@@ -35,13 +38,13 @@ struct Diagnosis {
   double least_effect = 0.1;  ///< relative change of the error that counts: 10 %, or what chance causes
   int trials = 0;
   bool interrupted = false;
-  bool out_of_budget = false;   ///< further causes were not looked for
-  std::vector<Cause> causes;    ///< with an effect, worst first
-  std::vector<Cause> harmless;  ///< with evidence, but a smaller effect
+  std::vector<std::string> left_out;  ///< for lack of budget, one phrase each
+  std::vector<Cause> causes;          ///< with an effect, worst first
+  std::vector<Cause> harmless;        ///< with evidence, but a smaller effect
   std::vector<Cause> unmeasured;
 };
 
-/// @throws InputError as `run_odometry`
+/// @throws InputError as `run_odometry`, and for a budget that ends before 30 frames are processed
 [[nodiscard]] Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options);
 
 /// Only the comparison of the ground truth with the other sensors, by one run without IMU.

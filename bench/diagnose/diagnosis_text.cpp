@@ -70,7 +70,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   if (!diagnosis.harmless.empty()) text += "found, with less effect: " + names(diagnosis.harmless) + "\n";
   if (!diagnosis.unmeasured.empty())
     text += "found, effect not measured: " + names(diagnosis.unmeasured) + "\n";
-  if (diagnosis.out_of_budget) text += "the budget is spent: more of it may find further causes\n";
+  if (!diagnosis.left_out.empty())
+    text += fmt::format("left out, for lack of budget: {}\n", fmt::join(diagnosis.left_out, "; "));
   return text + (diagnosis.interrupted ? "interrupted\n" : "");
 }
 
@@ -85,7 +86,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"least_effect", diagnosis.least_effect},
       {"trials", diagnosis.trials},
       {"interrupted", diagnosis.interrupted},
-      {"out_of_budget", diagnosis.out_of_budget},
+      {"left_out", diagnosis.left_out},
       {"causes", list(diagnosis.causes)},
       {"less_effect", list(diagnosis.harmless)},
       {"not_measured", list(diagnosis.unmeasured)}};

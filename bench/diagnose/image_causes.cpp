@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <numeric>
 
@@ -24,6 +25,8 @@ constexpr double kFewDepth = 0.35;      ///< median fraction of pixels with dept
 constexpr double kGapIntervals = 1.5;   ///< a longer interval lacks a frame
 constexpr double kMissingRatio = 0.01;  ///< of all frames
 constexpr std::size_t kLeastConcerned = 3;
+constexpr double kAlignmentSigmas = 4.0;  ///< significance of depth of another frame or place
+constexpr int kLeastShift_px = 2;         ///< edges of depth are not sharper
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -215,6 +218,36 @@ std::vector<Cause> image_causes(const datasets::SequenceInfo& info, const Record
        {content_causes(survey), depth_causes(survey), depth_range_causes(survey, info.rig.depth_units_per_m),
         dropped_frames(info.frame_times), rounded_stamps(info.frame_times)})
     causes.insert(causes.end(), more.begin(), more.end());
+  return causes;
+}
+
+std::vector<Cause> alignment_causes(const DepthAlignment& alignment) {
+  const auto evidence = [&](double gain, double sigmas) {
+    return fmt::format(
+        "edges of gray images and depth coincide {:.0f} % better with it ({:.0f} sigma, {} images)",
+        100.0 * gain, sigmas, alignment.images);
+  };
+  std::vector<Cause> causes;
+  if (alignment.delay != 0 && alignment.delay_sigmas > kAlignmentSigmas)
+    causes.push_back(
+        {.id = "depth_late",
+         .name = fmt::format("depth {} frame(s) {}", std::abs(alignment.delay),
+                             alignment.delay > 0 ? "late" : "early"),
+         .evidence = evidence(alignment.delay_gain, alignment.delay_sigmas),
+         .remedy = fmt::format("associate each image with the depth {} frame(s) {}",
+                               std::abs(alignment.delay), alignment.delay > 0 ? "later" : "earlier"),
+         .strength = alignment.delay_sigmas,
+         .correction = Correction{.depth_delay = alignment.delay}});
+  if (alignment.shift_px.cwiseAbs().maxCoeff() >= kLeastShift_px && alignment.shift_sigmas > kAlignmentSigmas)
+    causes.push_back(
+        {.id = "depth_unregistered",
+         .name = "depth not registered to the images",
+         .evidence = fmt::format("moved by ({}, {}) px, ", -alignment.shift_px.x(), -alignment.shift_px.y()) +
+                     evidence(alignment.shift_gain, alignment.shift_sigmas),
+         .remedy = "register depth with the calibration of both cameras: [depth] with T_c_d in "
+                   "rig.toml, from `stillpoint calibrate SEQ --depth-camera`",
+         .strength = alignment.shift_sigmas,
+         .correction = Correction{.depth_shift_px = alignment.shift_px}});
   return causes;
 }
 

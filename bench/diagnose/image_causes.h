@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/diagnose/cause.h"
+#include "bench/diagnose/evidence/depth_alignment.h"
 #include "bench/diagnose/evidence/recording_survey.h"
 
 namespace stillpoint::bench {
@@ -13,5 +14,8 @@ namespace stillpoint::bench {
 /// late depth, gaps and rounding of stamps.
 [[nodiscard]] std::vector<Cause> image_causes(const datasets::SequenceInfo& info,
                                               const RecordingSurvey& survey);
+
+/// Depth of another time or place than its images.
+[[nodiscard]] std::vector<Cause> alignment_causes(const DepthAlignment& alignment);
 
 }  // namespace stillpoint::bench

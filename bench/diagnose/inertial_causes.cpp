@@ -195,6 +195,28 @@ std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const LagFit
                Correction{.change = [offset_s](auto& changed) { changed.rig.time_offset_s = offset_s; }}}};
 }
 
+/// A lag that changes by more than a constant one may be wrong.
+std::vector<Cause> drift_causes(const datasets::SequenceInfo& info, const LagFit& fit) {
+  const Timestamp first = info.frame_times.front();
+  const double duration_s = seconds_between(first, info.frame_times.back());
+  const double rate = 1e-6 * fit.drift_ppm, sigmas = std::abs(fit.drift_ppm) / fit.drift_sigma_ppm;
+  if (std::abs(rate) * duration_s < kLeastLag_s || sigmas < kSignificant) return {};
+  return {{.id = "clock_drift",
+           .name = "clocks of camera and IMU drifting",
+           .evidence = fmt::format("the gyroscope gets {:.0f} +- {:.0f} ms later per minute", 6e4 * rate,
+                                   6e-2 * fit.drift_sigma_ppm),
+           .remedy =
+               fmt::format("divide the time since the start by {:.6f} in the stamps of the IMU", 1.0 + rate),
+           .strength = sigmas,
+           .correction = Correction{.change = [rate, lag_s = fit.lag_s, duration_s](auto& changed) {
+             // The lag of the fit is that of the middle, and becomes that of the whole.
+             const Timestamp middle = after(changed.frame_times.front(), 0.5 * duration_s);
+             for (ImuSample& sample : changed.imu)
+               sample.t = after(sample.t, -rate * seconds_between(middle, sample.t));
+             changed.rig.time_offset_s = lag_s;
+           }}}};
+}
+
 /// Number of samples at the largest absolute value of an axis, of the axis with the most.
 std::size_t clipped_samples(std::span<const ImuSample> samples, Eigen::Vector3d ImuSample::*sensor) {
   std::size_t most = 0;
@@ -305,7 +327,10 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
   const std::vector<Cause> axes = axes_causes(info, pairs, !accel_axes);
   add(axes);
   if (axes.empty()) add(rotation_causes(info, pairs));
-  if (lag) add(clock_causes(info, *lag));
+  if (lag) {
+    add(clock_causes(info, *lag));
+    add(drift_causes(info, *lag));
+  }
   add(depth_scale_causes(info, survey));
   if (const auto found = accelerometer_axes(info, survey)) {
     add({axes_cause(

@@ -113,11 +113,18 @@ LocalErrors local_errors(const RunResult& result, ErrorMeasure measure) {
 
 Trial run_trial(const datasets::SensorStream& stream, const TrialRequest& request,
                 const std::vector<Correction>& corrections) {
-  auto later = std::async(std::launch::async, [&] {
-    return error_of(run_part(stream, request, corrections, kLaterFrames), request.measure);
+  struct LaterRun {
+    double error = 0.0;
+    std::size_t frames = 0;
+  };
+  auto started = std::async(std::launch::async, [&] {
+    const RunResult result = run_part(stream, request, corrections, kLaterFrames);
+    return LaterRun{error_of(result, request.measure), result.run.summary.frames};
   });
   Trial trial{.result = run_part(stream, request, corrections, 0)};
-  const double first = std::log(error_of(trial.result, request.measure)), second = std::log(later.get());
+  const LaterRun later = started.get();
+  trial.frames = std::min(trial.result.run.summary.frames, later.frames + kLaterFrames);
+  const double first = std::log(error_of(trial.result, request.measure)), second = std::log(later.error);
   trial.error = std::exp(0.5 * (first + second));
   trial.difference = first - second;
   return trial;

@@ -37,6 +37,7 @@ struct TrialRequest {
 struct Trial {
   double error = 0.0;       ///< geometric mean of both runs [m], or without unit
   double difference = 0.0;  ///< of the logarithms of their errors
+  std::size_t frames = 0;   ///< of the part that both runs processed; fewer than it has if they were stopped
   RunResult result;         ///< of the run from the first frame of the part
 };
 

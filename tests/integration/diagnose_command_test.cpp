@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -88,6 +90,38 @@ TEST(DiagnoseCommand, TheLineOfARunWithoutPosesSaysNothingAboutTheRig) {
       << result.out;
   EXPECT_EQ(result.out.find("differs"), std::string::npos) << result.out;
   EXPECT_TRUE(nlohmann::json::parse(std::ifstream(out / "result.json")).at("rig_report").empty());
+}
+
+/// Adds 15 cm to the x coordinates of the second half.
+void plant_jump(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  in.close();
+  fs::remove(file);
+  std::ofstream out(file);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::istringstream row(lines[i]);
+    std::string t, rest;
+    double x = 0.0;
+    if (2 * i < lines.size() || !(row >> t >> x) || !std::getline(row, rest)) {
+      out << lines[i] << '\n';
+    } else {
+      out << t << ' ' << x + 0.15 << rest << '\n';
+    }
+  }
+}
+
+TEST(DiagnoseCommand, TellsAJumpOfTheTruthInItsRow) {
+  const ProgramResult sound = diagnosis_of(rendered_sequence(), {"--truth"});
+  EXPECT_EQ(sound.exit_code, 0) << sound.out << sound.err;
+  EXPECT_NE(sound.out.find("nothing that the other sensors contradict"), std::string::npos) << sound.out;
+  const TemporaryFolder folder;
+  const fs::path copy = copy_of_rendered_sequence(folder);
+  plant_jump(copy / "groundtruth.txt");
+  const ProgramResult jump = diagnosis_of(copy, {"--truth"});
+  EXPECT_EQ(jump.exit_code, 1) << jump.out << jump.err;
+  EXPECT_NE(jump.out.find("ground truth jumps: 1 step(s)"), std::string::npos) << jump.out;
 }
 
 TEST(DiagnoseCommand, NamesTheProblemOfABudgetWithoutUnit) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint diagnose`: what limits the accuracy on a recording, with evidence, measured effect and remedy.
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -55,12 +56,17 @@ std::unique_ptr<datasets::SensorStream> open_recording(const DiagnoseArguments& 
   return played(std::move(stream), {.start_s = arguments.start_s, .faults = parsed_faults(arguments.faults)});
 }
 
-DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::SequenceInfo& info) {
-  return {.config = config_of(arguments, info),
-          .budget_s = parse_duration_s(arguments.budget, "--budget"),
-          .length_s = arguments.length_s,
-          .stop_requested = interrupt_requested,
-          .on_step = [](const std::string& step) { spdlog::debug("{}", step); }};
+/// @param start of the budget: opening a recording counts
+DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::SequenceInfo& info,
+                            std::chrono::steady_clock::time_point start) {
+  return {
+      .config = config_of(arguments, info),
+      .budget_s = parse_duration_s(arguments.budget, "--budget"),
+      .elapsed_s =
+          [start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); },
+      .length_s = arguments.length_s,
+      .stop_requested = interrupt_requested,
+      .on_step = [](const std::string& step) { spdlog::debug("{}", step); }};
 }
 
 /// --truth: one row per sequence, and what it contradicts. A sequence of several that cannot be read is
@@ -77,9 +83,10 @@ int check_truths(const DiagnoseArguments& arguments) {
   std::string findings;
   for (const std::string& name : names) {
     try {
+      const auto start = std::chrono::steady_clock::now();
       const auto stream = open_recording(arguments, name);
       if (!stream || interrupt_requested()) return kExitInterrupted;
-      const TruthReport report = check_truth(*stream, options_of(arguments, stream->info()));
+      const TruthReport report = check_truth(*stream, options_of(arguments, stream->info(), start));
       std::cout << truth_table_row(stream->info().name, report, stream->info()) << std::flush;
       for (const Cause& cause : truth_causes(report, stream->info()))
         findings +=
@@ -99,9 +106,10 @@ int diagnose_sequence(const DiagnoseArguments& arguments) {
   if (arguments.truth) return check_truths(arguments);
   if (arguments.sequence.empty())
     throw InputError("SEQ", "is missing; only --truth works on all registered sequences");
+  const auto start = std::chrono::steady_clock::now();
   const auto stream = open_recording(arguments, arguments.sequence);
   if (!stream) return kExitInterrupted;
-  const Diagnosis diagnosis = diagnose(*stream, options_of(arguments, stream->info()));
+  const Diagnosis diagnosis = diagnose(*stream, options_of(arguments, stream->info(), start));
   std::cout << (arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));
   if (diagnosis.interrupted) return kExitInterrupted;
   return diagnosis.causes.empty() ? kExitOk : kExitFindings;

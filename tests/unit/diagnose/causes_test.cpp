@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Causes by the data alone, and the corrections that undo them.
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "bench/diagnose/image_causes.h"
 #include "bench/diagnose/inertial_causes.h"
+#include "bench/diagnose/truth_report.h"
 #include "tests/support/sequences/small_stream.h"
 #include "tests/unit/diagnose/turning_rig.h"
 
@@ -66,6 +68,22 @@ TEST(InertialCauses, TellASmallRotationAndALateClock) {
   EXPECT_LT(rig.info.rig.T_b_c.q.angularDistance(Eigen::Quaterniond::Identity()), 0.003);
 }
 
+TEST(InertialCauses, TellADriftingClock) {
+  TurningRig rig({.seconds = 20.0});
+  const Timestamp first = rig.info.frame_times.front();
+  for (ImuSample& sample : rig.info.imu) sample.t = after(sample.t, 0.002 * seconds_between(first, sample.t));
+  const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+  const Cause* const found = cause_named(causes, "clock_drift");
+  ASSERT_TRUE(found);
+  found->correction->change(rig.info);
+  std::vector<double> lags_s;
+  for (std::size_t i = 500; i < 3500; i += 500)
+    lags_s.push_back(seconds_between(rig.imu[i].t, rig.info.imu[i].t) - rig.info.rig.time_offset_s);
+  const auto [least, most] = std::ranges::minmax(lags_s);
+  EXPECT_LT(most - least, 0.003);  // 30 ms before
+  EXPECT_LT(std::max(most, -least), 0.005);
+}
+
 TEST(InertialCauses, TellGapsAndClippedSamples) {
   TurningRig rig({});
   std::erase_if(rig.info.imu, [](const ImuSample& sample) {
@@ -119,6 +137,66 @@ TEST(ImageCauses, ReplaceRoundedStampsByAConstantRate) {
   found->correction->change(rig.info);
   for (std::size_t i = 0; i < rig.info.frame_times.size(); ++i)
     EXPECT_LT(std::abs(seconds_between(rig.survey.frames[i].t, rig.info.frame_times[i])), 0.006);
+}
+
+/// A camera that turns and moves, and its ground truth: poses of a frame f, late by `late_s`.
+struct MovingCamera {
+  explicit MovingCamera(const Pose& T_c_f, double late_s = 0.0) {
+    Pose T_w_c;
+    constexpr int kPerFrame = 4;
+    const int last = kPerFrame * 30 * 8 - kPerFrame;
+    for (int i = 0; i <= last; ++i) {
+      const double t = i / (30.0 * kPerFrame), step_s = 1.0 / (30.0 * kPerFrame);
+      T_w_c.p = {0.5 * std::sin(1.1 * t), 0.4 * std::cos(1.7 * t), 0.3 * std::sin(2.3 * t)};
+      const StampedPose pose{from_seconds(10.0 + t), T_w_c};
+      if (i % kPerFrame == 0) visual.poses.push_back(pose);
+      rig.info.ground_truth.trajectory.poses.push_back({after(pose.t, late_s), T_w_c * T_c_f});
+      T_w_c.q = (T_w_c.q * Eigen::Quaterniond(exp_so3(step_s * TurningRig::rate_at(t + 0.5 * step_s))))
+                    .normalized();
+    }
+  }
+
+  [[nodiscard]] std::vector<Cause> causes() const {
+    return truth_causes(truth_report(rig.info, rig.survey, visual), rig.info);
+  }
+
+  TurningRig rig{{}};
+  Trajectory visual;
+};
+
+TEST(TruthCauses, AreAbsentForARightTruth) { EXPECT_TRUE(MovingCamera(Pose{}).causes().empty()); }
+
+TEST(TruthCauses, TellALateTruthAndTheCorrectionShiftsIt) {
+  MovingCamera camera(Pose{}, 0.04);
+  const std::vector<Cause> causes = camera.causes();
+  const Cause* const found = cause_named(causes, "truth_late");
+  ASSERT_TRUE(found);
+  found->correction->change(camera.rig.info);
+  EXPECT_NEAR(seconds_between(from_seconds(10.0), camera.rig.info.ground_truth.trajectory.poses[0].t), 0.0,
+              0.001);
+}
+
+TEST(TruthCauses, TellAJumpAtItsTime) {
+  MovingCamera camera(Pose{});
+  auto& poses = camera.rig.info.ground_truth.trajectory.poses;
+  for (std::size_t i = 500; i < poses.size(); ++i) poses[i].T_w_f.p.x() += 0.15;
+  const std::vector<Cause> causes = camera.causes();
+  const Cause* const found = cause_named(causes, "truth_jump");
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->times.size(), 1U);
+  EXPECT_LT(std::abs(seconds_between(poses[500].t, found->times[0])), 0.02);
+}
+
+TEST(TruthCauses, TellAnotherBodyAndTheCorrectionHasItsPose) {
+  const Pose T_c_f{Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY())), {0.1, -0.05, 0.2}};
+  MovingCamera camera(T_c_f);
+  const std::vector<Cause> causes = camera.causes();
+  const Cause* const found = cause_named(causes, "truth_frame");
+  ASSERT_TRUE(found);
+  found->correction->change(camera.rig.info);
+  const Pose& corrected = camera.rig.info.ground_truth.T_c_f;
+  EXPECT_LT(corrected.q.angularDistance(T_c_f.q), 0.005);
+  EXPECT_LT((corrected.p - T_c_f.p).norm(), 0.005);
 }
 
 TEST(CorrectedPart, CutsMirrorsAndScalesDepth) {
