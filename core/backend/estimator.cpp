@@ -322,7 +322,7 @@ void Estimator::restart_with_calibration(const Eigen::Vector3d& gyro_bias) {
   previous.T_w_b = product(previous.T_w_b, T_before_after);
   const bool had_frame = !window_.empty();
   const std::int64_t id = had_frame ? window().frames.back().id : 0;
-  std::vector<Landmark> landmarks = landmarks_of_newest(window());
+  std::vector<Landmark> landmarks = landmarks_of_newest(window(), calibration_.calibrated_window().lens);
   forget_calibrated_gravity(window_.states());
   restart(window().gravity_w);
   monitor_.calibration_changed();

@@ -59,6 +59,7 @@ Window Calibration::calibrated_window() const {
                             .lens = compares_lens() && !lens_found_};
   if (lens_found_) window.lens = *lens_found_;
   if (depth_scale_found_) window.depth_scale = depth_scale_found_->value;
+  if (time_offset_found_s_) window.time_offset_s = *time_offset_found_s_;
   if (!is_aligned_otherwise()) return window;
   window.T_b_c.q = rotation_alignment_->q_b_c;
   window.time_offset_s = rotation_alignment_->time_offset_s;
@@ -82,9 +83,15 @@ bool Calibration::awaits_alignment() const {
 }
 
 bool Calibration::align(const RotationAlignment& alignment) {
-  rotation_alignment_ = alignment;
-  if (!is_aligned_otherwise()) return false;
-  depth_scale_found_.reset();  // with the rotation of the rig
+  if (alignment.is_of_offset_alone) {
+    if (agrees_with_rig(alignment.rig_contradiction, 1)) return false;
+    time_offset_found_s_ = alignment.time_offset_s;
+  } else {
+    rotation_alignment_ = alignment;
+    if (!is_aligned_otherwise()) return false;
+  }
+  compared_since_.reset();
+  depth_scale_found_.reset();  // with the rotation and the time offset of the rig
   lens_found_.reset();
   return true;
 }

@@ -34,6 +34,7 @@ class Calibration {
   /// measured depth, by which the window can also start anew without an IMU.
   [[nodiscard]] bool awaits_alignment() const;
 
+  /// One of the time offset alone comes before that of the rotation.
   /// @return whether it contradicts the rig: windows start with it from now on
   [[nodiscard]] bool align(const RotationAlignment& alignment);
 
@@ -86,6 +87,7 @@ class Calibration {
   bool uses_imu_;
   Rig rig_;
   std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
+  std::optional<double> time_offset_found_s_;            ///< before the rotation, and contradicts the rig
   std::optional<Timestamp> compared_since_;              ///< depth scales
   std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
   std::optional<Eigen::Vector4d> lens_found_;            ///< same

@@ -25,6 +25,9 @@ struct RotationAlignment {
   /// leaves: four degrees of freedom.
   double rig_contradiction = 0.0;
   bool is_certain = false;  ///< to 0.3 degrees and 1 ms
+  /// The rotation of the rig was kept: the time offset is certain before, and the contradiction is its own
+  /// (one degree of freedom).
+  bool is_of_offset_alone = false;
 };
 
 /// Rotation of the camera from one frame to a later one, by vision alone.
@@ -48,6 +51,11 @@ struct CameraRotation {
 /// does not turn stays where it is. Jacobians, with the angular rates w_i, w_j at the ends:
 ///
 ///   dr/dtheta = R_b_c (dR_c^T - I),    dr/dd = dR_b^T w_i - w_j,    dr/db = -d Log(dR_b) / db.
+///
+/// A vibration has a minimum at each of its periods: a cart that vibrates at 10 Hz looks the same 100 ms
+/// later. The steps therefore begin at the offset within `BackendConfig::time_offset_bound_s` of the rig, in
+/// steps of 5 ms, where the mean of |r|, with the bias that makes the mean of r zero, is smallest, if it is
+/// less than seven tenths of that at the rig.
 class RotationAligner {
  public:
   RotationAligner(const BackendConfig& config, const Rig& rig);
@@ -57,8 +65,9 @@ class RotationAligner {
   /// For each frame.
   /// @param now its stamp
   /// @param imu samples since the first frame
-  /// @return the alignment once it is certain (0.3 degrees, 1 ms), and 3 s after the first frame in any case;
-  /// nothing in the first 1.5 s
+  /// @return the alignment once it is certain (0.3 degrees, 1 ms) after 1.5 s, and 3 s after the first frame
+  /// in any case; before, once, that of the time offset alone when it is certain, after 0.5 s: later ones are
+  /// relative to it
   [[nodiscard]] std::optional<RotationAlignment> align(Timestamp now, ImuBuffer& imu);
 
  private:
@@ -75,16 +84,23 @@ class RotationAligner {
 
   [[nodiscard]] std::vector<Residual> residuals(const RotationAlignment& at, ImuBuffer& imu) const;
   [[nodiscard]] NormalEquations normal_equations(const RotationAlignment& at, ImuBuffer& imu) const;
+  [[nodiscard]] double initial_offset(ImuBuffer& imu) const;
+  [[nodiscard]] RotationAlignment aligned(ImuBuffer& imu) const;
+  [[nodiscard]] std::optional<RotationAlignment> align_offset(RotationAlignment initial,
+                                                              ImuBuffer& imu) const;
 
   Eigen::Quaterniond q_b_c_;  ///< of the rig
-  double time_offset_s_;      ///< of the rig
+  double time_offset_s_;      ///< of the rig, or aligned alone
+  double offset_bound_s_;     ///< largest difference from it
   Unknowns prior_information_;
   std::optional<Timestamp> first_;  ///< stamp of the first frame
   std::vector<CameraRotation> rotations_;
+  bool offset_is_aligned_ = false;
 };
 
-/// Successive rotations of the camera over 0.2 s or more. States and calibration of the window are only their
-/// initial guess.
+/// Rotations of the camera from each frame to the next one, by which the time offset is seen where the camera
+/// vibrates, and successive ones over 0.2 s or more, which are more accurate. States and calibration of the
+/// window are only their initial guess.
 class CameraRotations {
  public:
   /// @param focal_px of the camera
@@ -92,13 +108,14 @@ class CameraRotations {
 
   /// Adds the newest frame of a window with an IMU.
   /// @param window with labels of the newest features
-  /// @return the rotation since the last view, if the frame is late enough for another view and at least 20
-  /// features determine it
-  [[nodiscard]] std::optional<CameraRotation> add(const Window& window);
+  /// @return those that end at it, if at least 20 features determine them
+  [[nodiscard]] std::vector<CameraRotation> add(const Window& window);
 
  private:
+  [[nodiscard]] std::optional<CameraRotation> since(std::size_t from, const Pose& T_b_c);
+
   FeatureViews views_;
-  Timestamp last_;  ///< stamp of the frame of the newest view
+  Timestamp long_begin_;  ///< stamp at which the next rotation of 0.2 s begins
 };
 
 }  // namespace stillpoint

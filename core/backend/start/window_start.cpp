@@ -100,8 +100,7 @@ Window WindowStart::restarted(const Window& window, const Eigen::Vector3d& gravi
 std::optional<RotationAlignment> WindowStart::align_rotations(const Window& window, Timestamp now,
                                                               ImuBuffer& imu) {
   if (!window.frames.empty()) {
-    if (const std::optional<CameraRotation> rotation = camera_rotations_.add(window))
-      rotation_aligner_.add(*rotation);
+    for (const CameraRotation& rotation : camera_rotations_.add(window)) rotation_aligner_.add(rotation);
   }
   return rotation_aligner_.align(now, imu);
 }

@@ -15,6 +15,7 @@ FeatureView view_of(const Window& window, Timestamp t, FeatureView view) {
   const WindowFrame& newest = window.frames.back();
   const NavState& before = window.frames[window.frames.size() - 2].state;
   view.t = t;
+  view.stamp = newest.state.t;
   view.T_w_b = newest.state.T_w_b;
   view.velocity_w = before.T_w_b.q * newest.from_previous->delta_v(before.gyro_bias, before.accel_bias);
   view.rotation_b = log_so3(newest.from_previous->delta_q(before.gyro_bias));

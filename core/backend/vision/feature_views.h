@@ -31,6 +31,7 @@ struct FeatureView {
     bool is_static = true;
   };
   Timestamp t;                 ///< on the IMU clock
+  Timestamp stamp;             ///< of the image
   Pose T_w_b;                  ///< estimated so far
   Eigen::Vector3d velocity_w;  ///< change by the specific force since the previous frame [m/s]
   Eigen::Vector3d rotation_b;  ///< since the previous frame [rad]

@@ -194,12 +194,13 @@ void restart_track(Landmark& landmark) {
   landmark.source = DepthSource::kNone;
 }
 
-std::vector<Landmark> landmarks_of_newest(const Window& window) {
+std::vector<Landmark> landmarks_of_newest(const Window& window, const Eigen::Vector4d& lens) {
   std::vector<Landmark> landmarks;
   for (const Landmark& landmark : window.landmarks) {
     if (landmark.last() != window.newest()) continue;
     Observation observation = landmark.observations.back();
     observation.information = 1.0;
+    observation.bearing = corrected_bearing(observation.seen, lens);
     landmarks.push_back({.id = landmark.id, .observations = {observation}, .dynamic = landmark.dynamic});
   }
   return landmarks;

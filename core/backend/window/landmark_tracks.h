@@ -36,6 +36,7 @@ void restart_track(Landmark& landmark);
 
 /// The landmarks that the newest frame observes, as those of a window of this frame alone: with one
 /// observation, and without the depth that was estimated.
-[[nodiscard]] std::vector<Landmark> landmarks_of_newest(const Window& window);
+/// @param lens correction of that window
+[[nodiscard]] std::vector<Landmark> landmarks_of_newest(const Window& window, const Eigen::Vector4d& lens);
 
 }  // namespace stillpoint

@@ -174,6 +174,23 @@ TEST(Calibration, StartsWithAnAlignmentThatContradictsTheRig) {
   EXPECT_EQ(calibration.calibrated_window().time_offset_s, 0.0);
 }
 
+/// A time offset that is certain before the rotation: the extrinsics stay those of the rig, and are still
+/// awaited.
+TEST(Calibration, StartsWithATimeOffsetAloneThatContradictsTheRig) {
+  BackendConfig config = estimating_config();
+  config.initializer.align_rotations = true;
+  Calibration calibration(config, true, {});
+  RotationAlignment alignment{.time_offset_s = 0.05, .rig_contradiction = 1.0, .is_of_offset_alone = true};
+  EXPECT_FALSE(calibration.align(alignment));
+  EXPECT_EQ(calibration.calibrated_window().time_offset_s, 0.0);
+  alignment.rig_contradiction = 100.0;
+  EXPECT_TRUE(calibration.align(alignment));
+  EXPECT_EQ(calibration.calibrated_window().time_offset_s, 0.05);
+  EXPECT_FALSE(calibration.calibrated_window().is_realigned);
+  EXPECT_TRUE(calibration.awaits_alignment());
+  EXPECT_FALSE(calibration.aligned_rotation());
+}
+
 /// Constant extrinsics become variable if rotations contradict those of the rig. What the residuals said
 /// about the lens until then was said with the wrong rotation.
 TEST(Calibration, EstimatesExtrinsicsSinceRotationsContradictThem) {

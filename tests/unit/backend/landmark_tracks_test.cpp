@@ -52,6 +52,16 @@ TEST(LandmarkTracks, KeepOnlyTheNewestObservationAfterARestart) {
   EXPECT_EQ(landmark.inverse_depth, 0.0);
 }
 
+/// With bearings of the lens before, a restart without it moved the camera by 0.5 m.
+TEST(LandmarkTracks, OfTheNewestFrameHaveTheLensOfTheirWindow) {
+  Window window = visual_window(5, 1);
+  const Eigen::Vector2d seen = window.landmarks[0].observations.back().bearing;
+  window.landmarks[0].observations.back().seen = seen;
+  set_lens({0.1, 0.0, 0.0, 0.0}, window);
+  ASSERT_EQ(landmarks_of_newest(window, window.lens)[0].observations[0].bearing, 1.1 * seen);
+  EXPECT_EQ(landmarks_of_newest(window, Eigen::Vector4d::Zero())[0].observations[0].bearing, seen);
+}
+
 TEST(LandmarkTracks, IgnoreABearingThatIsNotFinite) {
   Window window = visual_window(4, 1);
   TrackedFrame frame;
