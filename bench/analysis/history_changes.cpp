@@ -417,4 +417,115 @@ HistoryChanges history_changes(const CommitHistory& history, std::span<const Acc
   return changes;
 }
 
+namespace {
+
+constexpr std::size_t kMaxNewest = 5;    // a longer new level is a matter of the change detection
+constexpr std::size_t kMaxEarlier = 40;  // bounds the cost of the exact test
+
+/// Whether all newest values are relevant steps in one direction and their median is outside of the range.
+bool is_new_level(std::span<const double> earlier, std::span<const double> newest,
+                  const MetricDescriptor& gated) {
+  const double level = median_of(earlier);
+  const bool is_larger = newest.front() > level;
+  const auto [low, high] = std::minmax_element(earlier.begin(), earlier.end());
+  const double after = median_of(newest);
+  return (after > *high || after < *low) && std::ranges::all_of(newest, [&](double value) {
+           return (value > level) == is_larger && size_in_margins(level, value, gated) >= 1.0;
+         });
+}
+
+std::optional<SuspectedChange> suspicion_of(const HistorySeries& series, std::size_t index,
+                                            std::size_t level_start) {
+  const std::span<const double> values = std::span(series.values).subspan(level_start);
+  std::optional<SuspectedChange> found;
+  for (std::size_t count = 1; count <= kMaxNewest && count < values.size(); ++count) {
+    const std::span<const double> newest = values.last(count);
+    std::span<const double> earlier = values.first(values.size() - count);
+    earlier = earlier.last(std::min(earlier.size(), kMaxEarlier));
+    if (!is_new_level(earlier, newest, *series.gated)) continue;
+    const std::size_t at = series.values.size() - count;
+    const double before = median_of(earlier);
+    const double after = median_of(newest);
+    const double p = eval::rank_sum(earlier, newest)->p_value * static_cast<double>(kMaxNewest);
+    const bool larger_is_worse = series.gated->direction != MetricDirection::kLargerIsBetter;
+    found = {.series = index,
+             .before = series.commits[at - 1],
+             .after = series.commits[at],
+             .level_before = before,
+             .level_after = after,
+             .count_before = earlier.size(),
+             .count_after = count,
+             .p_value = std::min(p, 1.0),
+             .is_exact = series.gated->gate->repeatable && earlier.size() > 1 &&
+                         std::ranges::all_of(earlier, [&](double value) { return value == before; }),
+             .worse = (after > before) == larger_is_worse};
+  }
+  return found;
+}
+
+/// Index of the first value of the newest confirmed level of each series.
+std::vector<std::size_t> level_starts(const CommitHistory& history, const HistoryChanges& changes) {
+  std::vector<std::size_t> starts(history.series.size(), 0);
+  for (const LevelShift& shift : changes.shifts) {
+    const std::vector<std::size_t>& commits = history.series[shift.series].commits;
+    const auto first = std::lower_bound(commits.begin(), commits.end(), shift.after);
+    starts[shift.series] = std::max(starts[shift.series], static_cast<std::size_t>(first - commits.begin()));
+  }
+  return starts;
+}
+
+int rank_of(const MetricDescriptor* metric) {
+  if (metric == nullptr || !metric->gate) return 2;
+  return metric->gate->family == MetricFamily::kAccuracy ? 0 : 1;
+}
+
+bool is_compared(const HistorySeries& series) {
+  return series.gated != nullptr && series.metric != metric_id::kFailedRuns;
+}
+
+}  // namespace
+
+double size_in_margins(double before, double after, const MetricDescriptor& gated) {
+  const double relevant = std::max(gated.gate->floor, gated.gate->margin * std::abs(before));
+  if (after == before) return 0.0;
+  return relevant > 0.0 ? std::abs(after - before) / relevant : std::numeric_limits<double>::infinity();
+}
+
+bool precedes(const MetricDescriptor* a, double size_a, const MetricDescriptor* b, double size_b) {
+  if (std::isinf(size_a) != std::isinf(size_b)) return std::isinf(size_a);
+  return rank_of(a) != rank_of(b) ? rank_of(a) < rank_of(b) : size_a > size_b;
+}
+
+std::vector<SuspectedChange> suspected_changes(const CommitHistory& history, const HistoryChanges& changes) {
+  const std::vector<std::size_t> starts = level_starts(history, changes);
+  std::vector<SuspectedChange> suspected;
+  for (std::size_t i = 0; i < history.series.size(); ++i) {
+    const HistorySeries& series = history.series[i];
+    if (!is_compared(series) || starts[i] >= series.values.size()) continue;
+    if (const std::optional<SuspectedChange> found = suspicion_of(series, i, starts[i]))
+      suspected.push_back(*found);
+  }
+  const auto size = [&](const SuspectedChange& change) {
+    return size_in_margins(change.level_before, change.level_after, *history.series[change.series].gated);
+  };
+  std::ranges::stable_sort(suspected, [&](const SuspectedChange& a, const SuspectedChange& b) {
+    return precedes(history.series[a.series].gated, size(a), history.series[b.series].gated, size(b));
+  });
+  return suspected;
+}
+
+std::optional<double> visible_step(const CommitHistory& history, MetricFamily family) {
+  std::vector<double> steps;
+  for (const HistorySeries& series : history.series) {
+    if (!is_compared(series) || series.gated->gate->family != family || series.values.size() < 2) continue;
+    const std::span<const double> earlier = std::span(series.values).first(series.values.size() - 1);
+    const double level = median_of(earlier);
+    if (level == 0.0) continue;
+    const auto [low, high] = std::minmax_element(earlier.begin(), earlier.end());
+    steps.push_back(
+        std::max(series.gated->gate->margin, std::max(*high - level, level - *low) / std::abs(level)));
+  }
+  return eval::percentile(steps, 0.5);
+}
+
 }  // namespace stillpoint::bench

@@ -88,4 +88,39 @@ inline constexpr std::size_t kMaxAnalyzedCommits = 300;
                                              std::span<const Acceptance> acceptances,
                                              const eval::ChangePointOptions& options = {});
 
+/// The newest one to five values of a series: all differ from the median of the earlier ones of its level by
+/// more than margin and floor, in one direction, and their median is outside of the range of these.
+struct SuspectedChange {
+  std::size_t series = 0;  ///< index
+  std::size_t before = 0;  ///< commit indices, as in `LevelShift`
+  std::size_t after = 0;
+  double level_before = 0.0;  ///< median of the earlier values
+  double level_after = 0.0;   ///< median of the newest values
+  std::size_t count_before = 0;
+  std::size_t count_after = 0;
+  /// Mann-Whitney, two-sided, times the number of tried commits; at most 1. With few commits it is large
+  /// whatever the step.
+  double p_value = 1.0;
+  bool is_exact = false;  ///< the earlier values of a repeatable metric, at least two, are equal: no noise
+  bool worse = false;
+};
+
+/// A difference in units of what is relevant, the larger one of margin and floor of the metric; infinite if
+/// that is 0.
+[[nodiscard]] double size_in_margins(double before, double after, const MetricDescriptor& gated);
+
+/// Suspected changes that are no shifts of `changes`, in the order of `precedes`. They are no findings.
+[[nodiscard]] std::vector<SuspectedChange> suspected_changes(const CommitHistory& history,
+                                                             const HistoryChanges& changes);
+
+/// Order of changes: failures and missing results (infinite size), accuracy before cost, then by size.
+/// @param size as `size_in_margins`
+[[nodiscard]] bool precedes(const MetricDescriptor* a, double size_a, const MetricDescriptor* b,
+                            double size_b);
+
+/// Smallest relative step of a family of metrics that the newest commit could show as a suspected change: the
+/// median over its series of the distance from the median to the farthest value of the earlier commits, at
+/// least the margin; nullopt without a series of two values.
+[[nodiscard]] std::optional<double> visible_step(const CommitHistory& history, MetricFamily family);
+
 }  // namespace stillpoint::bench

@@ -42,6 +42,7 @@ constexpr char kInvalidByte = '\x01';
 
 std::string content_type(const std::string& path) {
   if (path.ends_with(".html")) return "text/html; charset=utf-8";
+  if (path.ends_with(".svg")) return "image/svg+xml";
   if (path.ends_with(".json")) return "application/json";
   return "text/plain; charset=utf-8";
 }

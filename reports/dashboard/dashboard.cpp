@@ -13,6 +13,7 @@
 #include "bench/analysis/run_groups.h"
 #include "bench/model/metrics.h"
 #include "core/base/error.h"
+#include "reports/dashboard/headline.h"
 #include "reports/dashboard/history_text.h"
 #include "reports/tables/text_format.h"
 
@@ -155,7 +156,7 @@ std::string commit_html(const bench::CommitHistory& history, const bench::Histor
 namespace {
 
 constexpr std::size_t kMaxMembers = 20;  // of a group that are listed individually
-constexpr std::string_view kDashboardScripts[] = {"vendor/uPlot.iife.min.js", "unpack.js",
+constexpr std::string_view kDashboardScripts[] = {"vendor/uPlot.iife.min.js", "unpack.js", "tables.js",
                                                   "dashboard/history_charts.js", "dashboard/dashboard.js"};
 
 std::string commit_link(const bench::CommitHistory& history, std::size_t commit) {
@@ -171,14 +172,7 @@ std::string series_link(const bench::CommitHistory& history, std::size_t series)
 std::string summary_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::set<std::string> hosts;
   for (const bench::HistorySeries& series : history.series) hosts.insert(series.subject.host);
-  const std::size_t open = grouped_shifts(history, changes, bench::ChangeState::kOpen).size();
-  const auto drifting = static_cast<std::size_t>(
-      std::count_if(changes.drifts.begin(), changes.drifts.end(),
-                    [](const bench::MetricDrift& drift) { return drift.is_open(); }));
-  std::string text =
-      "<li>" + (open == 0 ? "No open regressions" : counted(open, "open regression")) +
-      (drifting == 0 ? "" : "; " + counted(drifting, "metric") + " drifting for the worse over commits") +
-      ".</li>";
+  std::string text = "<li>" + escape_html(headline(history, changes)) + "</li>";
   if (history.system != bench::kOwnSystem)
     text += "<li>System: " + escape_html(history.system) + "; its versions take the place of commits.</li>";
   text += fmt::format("<li>{} from {} to {}, {}, {}.</li>", counted(history.commits.size(), "commit"),
@@ -203,6 +197,27 @@ std::string members_html(const bench::CommitHistory& history, const ShiftGroup& 
                      group.shifts.size() - 1, items, left);
 }
 
+std::string shell_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char letter : text) quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
+  return quoted + "'";
+}
+
+/// The command that accepts an open regression, and its size in margins.
+std::string accept_html(const bench::CommitHistory& history, const ShiftGroup& group) {
+  const bench::LevelShift& largest = *group.shifts.front();
+  const bench::HistorySeries& series = history.series[largest.series];
+  const std::string size =
+      largest.change && series.gated != nullptr
+          ? fmt::format("{:.1f} margins",
+                        bench::size_in_margins(largest.level_before, largest.level_after, *series.gated))
+          : "";
+  const std::string command = fmt::format(
+      "stillpoint store accept {} --metric {} --reason 'WHY' --store STORE",
+      shell_quoted(clean_line(history.commits[group.after].name)), shell_quoted(clean_line(group.metric)));
+  return size + "<details><summary>accept</summary><code>" + escape_html(command) + "</code></details>";
+}
+
 std::string change_row(const bench::CommitHistory& history, const ShiftGroup& group) {
   const bench::LevelShift& largest = *group.shifts.front();
   const bench::HistorySeries& series = history.series[largest.series];
@@ -214,7 +229,8 @@ std::string change_row(const bench::CommitHistory& history, const ShiftGroup& gr
       series_link(history, largest.series), members_html(history, group), escape_html(series.subject.host),
       escape_html(value_label(largest.level_before, series.unit)),
       escape_html(value_label(largest.level_after, series.unit)), change_label(largest),
-      interval_label(largest), escape_html(largest.reason));
+      interval_label(largest),
+      largest.state == bench::ChangeState::kOpen ? accept_html(history, group) : escape_html(largest.reason));
 }
 
 std::string groups_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes,
@@ -232,7 +248,46 @@ std::string groups_html(const bench::CommitHistory& history, const bench::Histor
                      {"after"},
                      {"change"},
                      {"n, 95 % interval"},
-                     {state == bench::ChangeState::kAccepted ? "reason" : "", true}},
+                     {state == bench::ChangeState::kAccepted ? "reason"
+                      : state == bench::ChangeState::kOpen   ? "size"
+                                                             : "",
+                      true}},
+                    rows);
+}
+
+constexpr std::size_t kMaxSuspected = 100;  // rows; the largest
+
+std::string suspected_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
+  const std::vector<bench::SuspectedChange> suspected = bench::suspected_changes(history, changes);
+  if (suspected.empty()) return "<p class=\"none\">None.</p>";
+  std::string rows;
+  for (std::size_t i = 0; i < std::min(suspected.size(), kMaxSuspected); ++i) {
+    const bench::SuspectedChange& change = suspected[i];
+    const bench::HistorySeries& series = history.series[change.series];
+    rows += fmt::format(
+        "<tr>{}<td class=\"text\">{} .. {}</td><td class=\"text\">{}</td><td class=\"text\">{}</td>"
+        "<td>{}</td><td>{}</td><td>{:.1f}</td><td>{} + {}</td><td>{}</td><td class=\"text\">{}</td></tr>\n",
+        metric_heading(series.metric), commit_link(history, change.before),
+        commit_link(history, change.after), series_link(history, change.series),
+        escape_html(series.subject.host), escape_html(value_label(change.level_before, series.unit)),
+        escape_html(value_label(change.level_after, series.unit)),
+        bench::size_in_margins(change.level_before, change.level_after, *series.gated), change.count_before,
+        change.count_after, p_label(change), change.worse ? "worse" : "better");
+  }
+  const std::string left = suspected.size() > kMaxSuspected
+                               ? fmt::format("{} smaller ones are omitted", suspected.size() - kMaxSuspected)
+                               : "";
+  return html_table("suspected-changes", left,
+                    {{"metric", true},
+                     {"between commits", true},
+                     {"on", true},
+                     {"machine", true},
+                     {"before"},
+                     {"after"},
+                     {"size [margins]"},
+                     {"commits"},
+                     {"p"},
+                     {"direction", true}},
                     rows);
 }
 
@@ -269,6 +324,7 @@ std::string index_html(const bench::CommitHistory& history, const bench::History
        {"summary", summary_html(history, changes)},
        {"glossary", glossary_html(metric_names(history))},
        {"open", groups_html(history, changes, bench::ChangeState::kOpen, "None.")},
+       {"suspected", suspected_html(history, changes)},
        {"accepted", groups_html(history, changes, bench::ChangeState::kAccepted, "None.")},
        {"improved", groups_html(history, changes, bench::ChangeState::kImproved, "None.")},
        {"resolved", groups_html(history, changes, bench::ChangeState::kResolved, "None.")},
@@ -298,7 +354,8 @@ std::vector<bench::OutputFile> dashboard_files(const bench::Store& store, const 
   const auto [history, changes] = analyze_history(store, system);
   std::vector<bench::OutputFile> files = {{"index.html", index_html(history, changes)},
                                           {"regressions.md", regressions_markdown(history, changes)},
-                                          {"regressions.json", regressions_json(history, changes)}};
+                                          {"regressions.json", regressions_json(history, changes)},
+                                          {"badge.svg", badge_svg(history, changes)}};
   for (std::size_t i = 0; i < history.commits.size(); ++i)
     files.push_back({commit_file(history.commits[i]), commit_html(history, changes, i)});
   return files;

@@ -14,6 +14,7 @@
 #include "bench/model/metrics.h"
 #include "core/base/content_hash.h"
 #include "core/base/module_timings.h"
+#include "reports/dashboard/headline.h"
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
@@ -218,9 +219,11 @@ std::string dashboard_data(const bench::CommitHistory& history, const bench::His
 
 namespace {
 
-/// Sort key: newly failing runs rank above any change of a metric.
-double magnitude(const bench::LevelShift& shift) {
-  return shift.change ? std::abs(shift.change->median) : std::numeric_limits<double>::infinity();
+/// Size in margins; newly failing runs and missing results rank above any change of a metric.
+double size_of(const bench::CommitHistory& history, const bench::LevelShift& shift) {
+  const bench::MetricDescriptor* gated = history.series[shift.series].gated;
+  if (!shift.change) return std::numeric_limits<double>::infinity();
+  return gated == nullptr ? 0.0 : bench::size_in_margins(shift.level_before, shift.level_after, *gated);
 }
 
 Json subject_json(const bench::CommitHistory& history, const bench::HistorySeries& series) {
@@ -289,6 +292,30 @@ std::string drifts_markdown(const bench::CommitHistory& history, const bench::Hi
          rows;
 }
 
+constexpr std::size_t kMaxMarkdownRows = 10;  // rows of the Markdown; the dashboard has more
+
+std::string suspected_markdown(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
+  const std::vector<bench::SuspectedChange> suspected = bench::suspected_changes(history, changes);
+  if (suspected.empty()) return "";
+  std::string rows;
+  for (std::size_t i = 0; i < std::min(suspected.size(), kMaxMarkdownRows); ++i) {
+    const bench::SuspectedChange& change = suspected[i];
+    const bench::HistorySeries& series = history.series[change.series];
+    rows += fmt::format("| {} | {} | {} | {} to {} | {} | {} |\n", escape_markdown(series.metric),
+                        escape_markdown(commit_label(history.commits[change.after].name)),
+                        escape_markdown(subject_label(series.subject)),
+                        escape_markdown(value_label(change.level_before, series.unit)),
+                        escape_markdown(value_label(change.level_after, series.unit)),
+                        change.worse ? "worse" : "better", p_label(change));
+  }
+  const std::string left = suspected.size() > kMaxMarkdownRows
+                               ? fmt::format("\n{} more.\n", suspected.size() - kMaxMarkdownRows)
+                               : "";
+  return "\nSuspected, not confirmed:\n\n| metric | since | on | before, after | | p |\n"
+         "|---|---|---|---|---|---:|\n" +
+         rows + left;
+}
+
 }  // namespace
 
 std::vector<ShiftGroup> grouped_shifts(const bench::CommitHistory& history,
@@ -304,13 +331,16 @@ std::vector<ShiftGroup> grouped_shifts(const bench::CommitHistory& history,
     group->shifts.push_back(&shift);
   }
   for (ShiftGroup& group : groups) {
-    std::stable_sort(
-        group.shifts.begin(), group.shifts.end(),
-        [](const bench::LevelShift* a, const bench::LevelShift* b) { return magnitude(*a) > magnitude(*b); });
+    std::stable_sort(group.shifts.begin(), group.shifts.end(),
+                     [&](const bench::LevelShift* a, const bench::LevelShift* b) {
+                       return size_of(history, *a) > size_of(history, *b);
+                     });
   }
-  std::stable_sort(groups.begin(), groups.end(), [](const ShiftGroup& a, const ShiftGroup& b) {
-    return a.after != b.after ? a.after > b.after
-                              : magnitude(*a.shifts.front()) > magnitude(*b.shifts.front());
+  std::ranges::stable_sort(groups, [&](const ShiftGroup& a, const ShiftGroup& b) {
+    const bench::LevelShift& first = *a.shifts.front();
+    const bench::LevelShift& second = *b.shifts.front();
+    return bench::precedes(history.series[first.series].gated, size_of(history, first),
+                           history.series[second.series].gated, size_of(history, second));
   });
   return groups;
 }
@@ -344,17 +374,17 @@ std::string tested_sentence(const bench::CommitHistory& history) {
 
 std::string regressions_markdown(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   const std::vector<ShiftGroup> groups = grouped_shifts(history, changes, bench::ChangeState::kOpen);
-  std::string text =
-      has_findings(history, changes) ? "No step is an open regression.\n" : "No open regressions.\n";
+  std::string text = escape_markdown(headline(history, changes)) + "\n";
   if (!groups.empty()) {
-    text =
-        "| metric | between commits | series | largest change on | before, after | change | n, 95 % interval "
+    text +=
+        "\n| metric | between commits | series | largest change on | before, after | change | n, 95 % "
+        "interval "
         "|\n"
         "|---|---|---:|---|---|---:|---|\n";
     for (const ShiftGroup& group : groups) text += group_row(history, group);
   }
-  const std::string tested = groups.empty() ? "\n" + tested_sentence(history) + "\n" : "";
-  return text + drifts_markdown(history, changes) + tested;
+  return text + drifts_markdown(history, changes) + suspected_markdown(history, changes) + "\n" +
+         tested_sentence(history) + "\n";
 }
 
 std::string regressions_json(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {

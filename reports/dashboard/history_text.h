@@ -45,7 +45,7 @@ struct ShiftGroup {
   std::vector<const bench::LevelShift*> shifts;  ///< the largest first
 };
 
-/// Newest commit first; within a commit failures first, then by falling change.
+/// In the order of `bench::precedes`: failures, accuracy, cost; by falling size in margins.
 [[nodiscard]] std::vector<ShiftGroup> grouped_shifts(const bench::CommitHistory& history,
                                                      const bench::HistoryChanges& changes,
                                                      bench::ChangeState state);
@@ -57,8 +57,8 @@ struct ShiftGroup {
 /// metrics.
 [[nodiscard]] std::string tested_sentence(const bench::CommitHistory& history);
 
-/// A table of open regressions, followed by metrics that drift for the worse; without one, what the history
-/// can show.
+/// For a merge request: what changed in one line, tables of open regressions, drifts for the worse and
+/// suspected changes, and the number of comparisons.
 [[nodiscard]] std::string regressions_markdown(const bench::CommitHistory& history,
                                                const bench::HistoryChanges& changes);
 

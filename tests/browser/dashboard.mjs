@@ -37,6 +37,18 @@ await test("the known regression is listed as open with its commits, and the acc
   assert.equal(await page.locator("#open-changes tr", { hasText: "ate_rmse_m" }).count(), 0);
 });
 
+await test("the first line says what changed and what cannot be seen; a regression has the command that accepts it", async () => {
+  const first = await page.textContent(".summary li");
+  assert.match(first, /^2 open regressions, first state_optimization of stillpoint on walking_xyz: \+\d.* 60 commits: steps of more than \d+ % in accuracy and \d+ % in cost could be seen, smaller ones not\.$/);
+  const row = page.locator("#open-changes tr", { hasText: "state_optimization" });
+  await row.locator("summary", { hasText: "accept" }).press("Enter");
+  const commit = await page.evaluate(() => window.stillpoint.index.commits[40].name);
+  assert.equal(await row.locator("code").textContent(), `stillpoint store accept '${commit}' --metric 'state_optimization' --reason 'WHY' --store STORE`);
+  const phone = await openDashboard({ viewport: { width: 390, height: 844 } });
+  assert.deepEqual(await phone.evaluate(() => [document.documentElement.scrollWidth - innerWidth, ...[...document.querySelectorAll(".table")].filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.textContent.slice(0, 40))]), [0]);
+  await phone.close();
+});
+
 await test("hovering one chart moves the cursor of all charts and shows the commit", async () => {
   const over = page.locator("#timeline .u-over");
   await over.scrollIntoViewIfNeeded();

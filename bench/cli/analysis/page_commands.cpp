@@ -91,7 +91,7 @@ int dashboard(const DashboardArguments& arguments) {
   if (arguments.out.empty()) throw InputError("--out", "is required: the output folder of index.html");
   const fs::path out = arguments.out;
   require_safe_folder(out,
-                      {.names = {"index.html", "regressions.md", "regressions.json", "commits"},
+                      {.names = {"index.html", "regressions.md", "regressions.json", "badge.svg", "commits"},
                        .marks = {{"index.html", "regressions.md"}}},
                       {arguments.store});
   require_writable(out);

@@ -178,6 +178,7 @@
   document.addEventListener("keydown", onKey);
   window.addEventListener("hashchange", fromHash);
   window.addEventListener("resize", () => state.charts.resize());
+  page.stackTables(document);
   if (!fromHash()) listSubjects(firstSubject());
   document.documentElement.dataset.readyMs = Math.round(performance.now());
 })(window.stillpoint);
