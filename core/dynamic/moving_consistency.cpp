@@ -109,6 +109,7 @@ const std::vector<std::int64_t>& StaticReadmission::update(const ConsistencyView
   std::swap(previous_, anchors_);
   anchors_.clear();
   readmitted_.clear();
+  if (view.T_w_c.empty()) return readmitted_;  // the only frame could not be located
   const Pose& T_w_c = view.T_w_c.back();
   const Pose T_c_w = T_w_c.inverse();
   const auto is_static = [&](const Anchor& anchor, const Eigen::Vector2d& bearing) {

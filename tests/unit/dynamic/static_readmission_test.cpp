@@ -26,6 +26,11 @@ TEST(StaticReadmission, ReadmitsAfterTheMinimumNumberOfStaticFrames) {
   EXPECT_EQ(readmission.update(view_of(10.0, 2.0)), std::vector<std::int64_t>{7});
 }
 
+TEST(StaticReadmission, AWindowWithoutFramesReadmitsNothing) {
+  StaticReadmission readmission(kMinStaticFrames, kStaticResidual_px);
+  EXPECT_TRUE(readmission.update(ConsistencyView{}).empty());
+}
+
 TEST(StaticReadmission, DoesNotReadmitSlowlyMovingFeatures) {
   StaticReadmission readmission(kMinStaticFrames, kStaticResidual_px);
   // 0.6 px per frame: the third frame is 1.8 px from the anchor, which resets it.
