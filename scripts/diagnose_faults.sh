@@ -112,7 +112,12 @@ for sequence in "$@"; do
       fi
     done
     begin=$SECONDS
-    "$program" diagnose "$folder" --json --budget "${BUDGET:-30s}" --length 10 "${options[@]}" >"$work/out.json" 2>"$work/err" || true
+    "$program" diagnose "$folder" --json --budget "${BUDGET:-30s}" --length 10 "${options[@]}" >"$work/out.json" 2>"$work/err" && status=0 || status=$?
+    if ((status > 1)); then  # an error is not "nothing found"
+      echo "$(basename "$sequence"),$fault,$expected,failed,,$(tail -n 1 "$work/err" | tr ',' ';'),$((SECONDS - begin))" >>"$table"
+      rm -rf "${work:?}/$fault"
+      continue
+    fi
     # Causes with an effect first, then those with less effect, then those that were not measured.
     awk -v sequence="$(basename "$sequence")" -v fault="$fault" -v expected="$expected" -v seconds=$((SECONDS - begin)) '
       /"id":/ { gsub(/[",]/, "", $2); ids[++n] = $2 }
