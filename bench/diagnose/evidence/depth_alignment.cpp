@@ -24,6 +24,7 @@ constexpr std::size_t kMostEdges = 3000;  // of which every nth is used
 constexpr float kMostGradient = 30.0F;    // strong texture must not outweigh many edges
 constexpr double kDepthStep = 0.05;       // relative; noise of depth cameras is below 2 % up to 5 m
 constexpr int kShifts = 2 * kMaxShift_px + 1;
+constexpr std::size_t kDelays = 2 * kMaxDelay + 1;
 
 /// Sum of the absolute differences of the neighbors in both directions, clamped.
 cv::Mat gradient_of(const cv::Mat& gray) {
@@ -91,8 +92,8 @@ double sigmas(const Scores& scores, const Scores& others) {
 }
 
 struct AlignmentScores {
-  std::vector<Scores> delays = std::vector<Scores>(2 * kMaxDelay + 1);
-  std::vector<Scores> shifts = std::vector<Scores>(kShifts * kShifts);
+  std::vector<Scores> delays = std::vector<Scores>(kDelays);
+  std::vector<Scores> shifts = std::vector<Scores>(std::size_t{kShifts} * kShifts);
 
   /// @param edges per delay
   void add(const cv::Mat& gray, const std::vector<std::vector<cv::Point>>& edges) {
@@ -136,10 +137,10 @@ void add_image(const datasets::SensorStream& stream, std::size_t index, Alignmen
 std::optional<DepthAlignment> align_depth(const datasets::SensorStream& stream,
                                           const std::function<bool()>& stop_requested) {
   const std::size_t frames = stream.info().frame_times.size();
-  if (frames <= 2 * kMaxDelay) return std::nullopt;
-  const std::size_t step = std::max<std::size_t>(1, (frames - 2 * kMaxDelay) / kMostImages);
+  if (frames < kDelays) return std::nullopt;
+  const std::size_t step = std::max<std::size_t>(1, (frames - kDelays + 1) / kMostImages);
   AlignmentScores scores;
-  for (std::size_t i = 0; i + 2 * kMaxDelay < frames; i += step) {
+  for (std::size_t i = 0; i + kDelays <= frames; i += step) {
     if (stop_requested && stop_requested()) return std::nullopt;
     add_image(stream, i, scores);
   }

@@ -218,7 +218,7 @@ std::optional<RotationAlignment> RotationAligner::align(Timestamp now, ImuBuffer
   const RotationAlignment found = aligned(imu);
   if ((found.is_certain && span >= kMinSpan_s) || span >= kMaxSpan_s) return found;
   if (offset_is_aligned_) return std::nullopt;
-  const std::optional<RotationAlignment> offset_alone = align_offset(found, imu);
+  std::optional<RotationAlignment> offset_alone = align_offset(found, imu);
   if (!offset_alone) return std::nullopt;
   offset_is_aligned_ = true;
   time_offset_s_ = offset_alone->time_offset_s;
