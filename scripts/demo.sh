@@ -3,8 +3,14 @@
 # Sets the machine up, builds the program, runs the quick benchmark on sequences that it renders itself, and writes its page.
 #   demo.sh [--minimal]     --minimal: only packages and program of the minimal build, which has no renderer, bags and pages
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-preset=release
-[[ ${1:-} != --minimal ]] || preset=minimal
+case "${1:-}" in
+  "") preset=release ;;
+  --minimal) preset=minimal ;;
+  *)
+    echo "demo.sh: unknown argument \"$1\": only --minimal is known" >&2
+    exit 2
+    ;;
+esac
 
 step "packages"
 if [[ $preset == minimal ]]; then scripts/setup.sh --minimal; else scripts/setup.sh; fi

@@ -56,7 +56,7 @@ detector_hallucinating | boxes | detector_hallucinating:amount=6,start=0,duratio
 
 if [[ -n "${PAIRS:-}" ]]; then
   pairs=''
-  for pair in $PAIRS; do # the first one may be a change of files
+  for pair in $PAIRS; do
     row="$(awk -F' [|] ?' -v first="${pair%%+*}" -v second="${pair##*+}" '
       $1 == first { id1 = $2; how1 = $3 } $1 == second { id2 = $2; how2 = $3 }
       END { printf "%s+%s | %s+%s | %s;%s", first, second, id1, id2, how1, how2 }' <<<"$faults")"
@@ -103,19 +103,21 @@ for sequence in "$@"; do
     fault="${fault// /}" expected="${expected// /}" how="${how// /}"
     [[ -n "$fault" && "$fault" =~ ${FAULTS:-.} ]] || continue
     folder="$sequence" options=()
-    for change in ${how//;/ }; do
-      if [[ "$change" == file ]]; then
-        folder="$work/$fault"
-        changed_copy "$sequence" "${fault%%+*}" "$folder"
+    read -ra names <<<"${fault//+/ }"
+    IFS=';' read -ra changes <<<"$how"
+    for i in "${!changes[@]}"; do # the second change of files is made in the copy of the first
+      if [[ "${changes[i]}" == file ]]; then
+        changed_copy "$folder" "${names[i]}" "$work/$i"
+        folder="$work/$i"
       else
-        options+=(--fault "$change")
+        options+=(--fault "${changes[i]}")
       fi
     done
     begin=$SECONDS
     "$program" diagnose "$folder" --json --budget "${BUDGET:-30s}" --length 10 "${options[@]}" >"$work/out.json" 2>"$work/err" && status=0 || status=$?
     if ((status > 1)); then  # an error is not "nothing found"
       echo "$(basename "$sequence"),$fault,$expected,failed,,$(tail -n 1 "$work/err" | tr ',' ';'),$((SECONDS - begin))" >>"$table"
-      rm -rf "${work:?}/$fault"
+      rm -rf "${work:?}"/[01]
       continue
     fi
     # Causes with an effect first, then those with less effect, then those that were not measured.
@@ -134,6 +136,6 @@ for sequence in "$@"; do
         printf "%s,%s,%s,%d,%s,%s,%d\n", sequence, fault, expected, rank,
           effect == "" || effect == "null" ? "" : sprintf("%+.0f", 100 * (effect - 1)), found, seconds
       }' "$work/out.json" | tee -a "$table"
-    rm -rf "${work:?}/$fault"
+    rm -rf "${work:?}"/[01]
   done <<<"$faults"
 done
