@@ -434,20 +434,24 @@ bool is_new_level(std::span<const double> earlier, std::span<const double> newes
          });
 }
 
+/// The values of a level without its newest `count`.
+std::span<const double> earlier_values(std::span<const double> level, std::size_t count) {
+  const std::span<const double> earlier = level.first(level.size() - count);
+  return earlier.last(std::min(earlier.size(), kMaxEarlier));
+}
+
 std::optional<SuspectedChange> suspicion_of(const HistorySeries& series, std::size_t index,
                                             std::size_t level_start) {
   const std::span<const double> values = std::span(series.values).subspan(level_start);
   std::optional<SuspectedChange> found;
   for (std::size_t count = 1; count <= kMaxNewest && count < values.size(); ++count) {
     const std::span<const double> newest = values.last(count);
-    std::span<const double> earlier = values.first(values.size() - count);
-    earlier = earlier.last(std::min(earlier.size(), kMaxEarlier));
+    const std::span<const double> earlier = earlier_values(values, count);
     if (!is_new_level(earlier, newest, *series.gated)) continue;
     const std::size_t at = series.values.size() - count;
     const double before = median_of(earlier);
     const double after = median_of(newest);
     const double p = eval::rank_sum(earlier, newest)->p_value * static_cast<double>(kMaxNewest);
-    const bool larger_is_worse = series.gated->direction != MetricDirection::kLargerIsBetter;
     found = {.series = index,
              .before = series.commits[at - 1],
              .after = series.commits[at],
@@ -458,7 +462,7 @@ std::optional<SuspectedChange> suspicion_of(const HistorySeries& series, std::si
              .p_value = std::min(p, 1.0),
              .is_exact = series.gated->gate->repeatable && earlier.size() > 1 &&
                          std::ranges::all_of(earlier, [&](double value) { return value == before; }),
-             .worse = (after > before) == larger_is_worse};
+             .worse = bad_direction(*series.gated) * (after - before) > 0.0};
   }
   return found;
 }
@@ -514,11 +518,15 @@ std::vector<SuspectedChange> suspected_changes(const CommitHistory& history, con
   return suspected;
 }
 
-std::optional<double> visible_step(const CommitHistory& history, MetricFamily family) {
+std::optional<double> visible_step(const CommitHistory& history, const HistoryChanges& changes,
+                                   MetricFamily family) {
+  const std::vector<std::size_t> starts = level_starts(history, changes);
   std::vector<double> steps;
-  for (const HistorySeries& series : history.series) {
-    if (!is_compared(series) || series.gated->gate->family != family || series.values.size() < 2) continue;
-    const std::span<const double> earlier = std::span(series.values).first(series.values.size() - 1);
+  for (std::size_t i = 0; i < history.series.size(); ++i) {
+    const HistorySeries& series = history.series[i];
+    if (!is_compared(series) || series.gated->gate->family != family) continue;
+    if (starts[i] + 2 > series.values.size()) continue;
+    const std::span<const double> earlier = earlier_values(std::span(series.values).subspan(starts[i]), 1);
     const double level = median_of(earlier);
     if (level == 0.0) continue;
     const auto [low, high] = std::minmax_element(earlier.begin(), earlier.end());

@@ -119,8 +119,9 @@ struct SuspectedChange {
                             double size_b);
 
 /// Smallest relative step of a family of metrics that the newest commit could show as a suspected change: the
-/// median over its series of the distance from the median to the farthest value of the earlier commits, at
-/// least the margin; nullopt without a series of two values.
-[[nodiscard]] std::optional<double> visible_step(const CommitHistory& history, MetricFamily family);
+/// median over its series of the distance from the median to the farthest of the earlier values of the newest
+/// level, at least the margin; nullopt without a level of two values.
+[[nodiscard]] std::optional<double> visible_step(const CommitHistory& history, const HistoryChanges& changes,
+                                                 MetricFamily family);
 
 }  // namespace stillpoint::bench

@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::size_t kConfirmable = 40;  // commits; see `tested_sentence`
 
-std::string visible_sentence(const bench::CommitHistory& history) {
+std::string visible_sentence(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::string text;
   for (const auto& [family, name] : {std::pair{bench::MetricFamily::kAccuracy, "accuracy"},
                                      std::pair{bench::MetricFamily::kCost, "cost"}}) {
-    if (const std::optional<double> step = bench::visible_step(history, family))
+    if (const std::optional<double> step = bench::visible_step(history, changes, family))
       text += fmt::format("{}{:.0f} % in {}", text.empty() ? "" : " and ", 100.0 * *step, name);
   }
   const std::string commits = counted(history.commits.size(), "commit");
@@ -54,7 +54,7 @@ std::string headline(const bench::CommitHistory& history, const bench::HistoryCh
   if (drifting > 0)
     text += fmt::format(" {} drifting for the worse over commits.",
                         counted(static_cast<std::size_t>(drifting), "metric"));
-  return text + " " + visible_sentence(history);
+  return text + " " + visible_sentence(history, changes);
 }
 
 std::string badge_svg(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {

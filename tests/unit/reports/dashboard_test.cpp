@@ -217,7 +217,7 @@ TEST(SuspectedChanges, AreListedFromTheFirstCommitOnAccuracyFirst) {
   EXPECT_EQ(text.find("No open regressions. 2 suspected changes of the newest commits, 2 for the worse"), 0u);
   // The step of the newest commit is none of the scatter that hides steps.
   const double margin = bench::gated_metric(bench::metric_id::kAte)->gate->margin;
-  EXPECT_EQ(bench::visible_step(history, bench::MetricFamily::kAccuracy), margin);
+  EXPECT_EQ(bench::visible_step(history, {}, bench::MetricFamily::kAccuracy), margin);
   EXPECT_NE(text.find("6 commits: steps of more than "), std::string::npos) << text;
   EXPECT_FALSE(has_findings(history, {}));
 }
@@ -225,6 +225,16 @@ TEST(SuspectedChanges, AreListedFromTheFirstCommitOnAccuracyFirst) {
 TEST(SuspectedChanges, AreNotConfirmedShifts) {
   const bench::CommitHistory history = two_metrics(6, 1);
   EXPECT_EQ(bench::suspected_changes(history, {.shifts = {shift_of(0.3, 5)}, .drifts = {}}).size(), 1u);
+}
+
+TEST(VisibleStep, IsThatOfTheNewestLevel) {
+  const bench::CommitHistory history = two_metrics(9, 5);
+  bench::LevelShift shift = shift_of(0.3, 4);
+  shift.series = history.series.size() - 1;  // the error
+  const double margin = bench::gated_metric(bench::metric_id::kAte)->gate->margin;
+  const auto accuracy = bench::MetricFamily::kAccuracy;
+  EXPECT_EQ(bench::visible_step(history, {.shifts = {shift}, .drifts = {}}, accuracy), margin);
+  EXPECT_GT(bench::visible_step(history, {}, accuracy), margin);
 }
 
 TEST(HistoryText, AnIntervalHasItsNumberOfValuesAndIsAbsentIfTheyDoNotSupportOne) {
