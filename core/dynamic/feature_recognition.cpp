@@ -19,7 +19,8 @@ constexpr double kGateThreshold_px = 10.0;
 constexpr double kRecycleResidual_px = 1.0;
 
 /// Features inside the mask are readmitted while fewer of all are stable. Visual odometry follows people who
-/// stand for a while if they are readmitted without a limit: market, four starts, 5.2 instead of 3.3 mm.
+/// stand for a while if they are readmitted without a limit: 5.2 instead of 3.3 mm (market, four starts of a
+/// prototype).
 constexpr double kMinStableRatio = 0.75;
 
 bool is_dynamic(const DynamicLabel& label) { return label.label != LabelClass::kStable; }
