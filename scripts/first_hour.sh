@@ -15,10 +15,10 @@ failed=0 number=0
 while IFS='|' read -r expected command; do
   [[ -n $command ]] || continue
   number=$((number + 1))
-  start=${EPOCHREALTIME/./}
+  start=${EPOCHREALTIME/[.,]/}
   bash -c "$command" >"$folder/out" 2>&1 </dev/null
   status=$?
-  took_ms=$(((${EPOCHREALTIME/./} - start) / 1000))
+  took_ms=$(((${EPOCHREALTIME/[.,]/} - start) / 1000))
   printf '%2d  %s  %6d ms  %s\n' "$number" "$([[ $status == "$expected" ]] && echo ok || echo "DIFFERS: $status")" "$took_ms" "$command"
   [[ $status == "$expected" ]] && continue
   failed=$((failed + 1))

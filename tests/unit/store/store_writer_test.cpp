@@ -49,7 +49,7 @@ void acquire_and_die(const std::filesystem::path& file, const RunIdentity& ident
   ASSERT_TRUE(WIFSIGNALED(status));
 }
 
-/// Lets four processes open a store for writing at once. @returns how many fail
+/// Lets four processes open a store for writing at once. @returns how many fail; -1 without a pipe
 int failures_of_writers_at_once(const std::filesystem::path& file) {
   std::array<int, 2> gate{};
   if (pipe(gate.data()) != 0) return -1;
