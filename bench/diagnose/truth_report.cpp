@@ -20,6 +20,10 @@ constexpr double kLeastTruthLag_s = 0.003;  ///< between frames the camera moves
 constexpr double kLeastTurn_rad = 0.035;    ///< 2 degrees
 constexpr double kLeastDistance_m = 0.01;
 constexpr double kLeastScale = 0.02;
+constexpr double kMostScaleSigma = 0.25;  ///< relative; above only a factor of e would be clear
+constexpr double kMostTurnSigma_rad = 0.17;
+constexpr double kMostPositionSigma_m = 0.1;
+constexpr double kLeastMotions = 30.0;
 constexpr double kLeastNoise_m = 0.002;
 constexpr double kLeastJump_m = 0.03;
 constexpr double kJumpRatio = 8.0;  ///< to the median difference of neighboring steps
@@ -93,13 +97,47 @@ std::vector<Timestamp> jumps_of(const std::vector<StampedPose>& poses) {
   return jumps;
 }
 
-/// Adds position and scale of the hand-eye calibration.
-void add_hand_eye(const Trajectory& truth, const Trajectory& visual, TruthReport& report) {
+/// Linear least squares y = J x over motions whose overlap repeats their errors.
+class MotionFit {
+ public:
+  struct Solution {
+    Eigen::Vector4d x, sigma;
+  };
+
+  void add(const Eigen::Matrix<double, 3, 4>& J, const Eigen::Vector3d& y) {
+    H_ += J.transpose() * J;
+    g_ += J.transpose() * y;
+    squares_ += y.squaredNorm();
+    count_ += 1.0;
+  }
+
+  /// @return nullopt for too few motions, or those that do not determine x
+  [[nodiscard]] std::optional<Solution> solve() const {
+    if (count_ < kLeastMotions) return std::nullopt;
+    const Eigen::Vector4d x = H_.ldlt().solve(g_);
+    const double independent = count_ / (kMotion_s * 30.0) + 1.0;
+    const double variance = std::max(0.0, squares_ - g_.dot(x)) / (3.0 * independent);
+    const Eigen::Vector4d sigma = (variance * H_.inverse().diagonal().cwiseMax(0.0)).cwiseSqrt();
+    if (!x.allFinite() || !sigma.allFinite()) return std::nullopt;
+    return Solution{x, sigma};
+  }
+
+ private:
+  Eigen::Matrix4d H_ = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d g_ = Eigen::Vector4d::Zero();
+  double squares_ = 0.0, count_ = 0.0;
+};
+
+/// Both regressions of the hand-eye calibration.
+struct HandEye {
+  MotionFit truth;   ///< p_A = s R_f_c p_B - (R_A - I) p;      x = (p, s)
+  MotionFit camera;  ///< R_f_c p_B = p_A / s + (R_A - I) p / s; x = (p / s, 1 / s)
+};
+
+HandEye hand_eye(const Trajectory& truth, const Trajectory& visual, const TruthReport& report) {
   const Eigen::Quaterniond q_f_c = report.rotation->q_a_b;
   const double lag_s = report.by_images ? report.by_images->lag_s : 0.0;
-  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d g = Eigen::Vector4d::Zero();
-  double squares = 0.0, count = 0.0;
+  HandEye result;
   auto end = visual.poses.begin();
   for (const StampedPose& begin : visual.poses) {
     while (end != visual.poses.end() && seconds_between(begin.t, end->t) < kMotion_s) ++end;
@@ -107,23 +145,33 @@ void add_hand_eye(const Trajectory& truth, const Trajectory& visual, TruthReport
     const auto from = pose_at(truth, after(begin.t, lag_s)), to = pose_at(truth, after(end->t, lag_s));
     if (!from || !to) continue;
     const Pose A = from->inverse() * *to, B = begin.T_w_f.inverse() * end->T_w_f;
+    const Eigen::Vector3d camera = q_f_c * B.p;
+    const Eigen::Matrix3d turn = A.R() - Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, 3, 4> J;
-    J << A.R() - Eigen::Matrix3d::Identity(), -(q_f_c * B.p);
-    H += J.transpose() * J;
-    g += J.transpose() * A.p;
-    squares += A.p.squaredNorm();
-    count += 1.0;
+    J << -turn, camera;
+    result.truth.add(J, A.p);
+    J << turn, A.p;
+    result.camera.add(J, camera);
   }
-  if (count < 30.0) return;
-  const Eigen::Vector4d x = -H.ldlt().solve(g);
-  const double independent = count / (kMotion_s * 30.0) + 1.0;  // overlapping motions repeat their errors
-  const double variance = std::max(0.0, squares + g.dot(x)) / (3.0 * independent);
-  const Eigen::Vector4d sigma = (variance * H.inverse().diagonal().cwiseMax(0.0)).cwiseSqrt();
-  if (!x.allFinite() || !sigma.allFinite()) return;
-  report.position = x.head<3>();
-  report.position_sigma = sigma.head<3>();
-  report.scale = x[3];
-  report.scale_sigma = sigma[3];
+  return result;
+}
+
+/// Adds position and scale of the hand-eye calibration, if the motion determines them.
+void add_hand_eye(const Trajectory& truth, const Trajectory& visual, TruthReport& report) {
+  const HandEye motions = hand_eye(truth, visual, report);
+  const auto by_truth = motions.truth.solve(), by_camera = motions.camera.solve();
+  if (!by_truth || !by_camera || by_truth->x[3] <= 0.0 || by_camera->x[3] <= 0.0) return;
+  const double least = by_truth->x[3], most = 1.0 / by_camera->x[3];
+  const Eigen::Vector3d p = by_truth->x.head<3>(), q = most * by_camera->x.head<3>();
+  const Eigen::Vector3d p_sigma = by_truth->sigma.head<3>(), q_sigma = most * by_camera->sigma.head<3>();
+  report.position = 0.5 * (p + q);
+  for (int axis = 0; axis < 3; ++axis)
+    report.position_sigma[axis] =
+        std::hypot(0.5 * (p[axis] - q[axis]), 0.5 * (p_sigma[axis] + q_sigma[axis]));
+  const double relative = 0.5 * (by_truth->sigma[3] / least + by_camera->sigma[3] * most);
+  const ScaleFit scale{.scale = std::sqrt(least * most),
+                       .relative_sigma = std::hypot(0.5 * std::log(most / least), relative)};
+  if (scale.relative_sigma <= kMostScaleSigma) report.scale = scale;
 }
 
 Cause truth_cause(const std::string& id, const std::string& name, const std::string& evidence,
@@ -220,18 +268,18 @@ std::vector<Cause> quality_causes(const TruthReport& report) {
 }
 
 std::vector<Cause> scale_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
-  const double difference = std::log(std::max(1e-3, report.scale));
-  if (!report.position || std::abs(difference) < kLeastScale ||
-      std::abs(report.scale - 1.0) < kClear * report.scale_sigma)
-    return {};
-  const bool unit = report.scale > 3.0 || report.scale < 1.0 / 3.0;
+  if (!report.scale) return {};
+  const auto [scale, relative_sigma] = *report.scale;
+  const double difference = std::abs(std::log(scale));
+  if (difference < std::max(kLeastScale, kClear * relative_sigma)) return {};
+  const bool unit = scale > 3.0 || scale < 1.0 / 3.0;
   Cause cause = truth_cause(
       unit ? "depth_unit" : "depth_scale", unit ? "unit of depth" : "scale of depth",
       fmt::format("the camera moves {:.3f} +- {:.3f} times as far by the ground truth as by images and depth",
-                  report.scale, report.scale_sigma),
-      fmt::format("[depth] scale = {:.4g} in rig.toml", info.rig.depth_units_per_m / report.scale));
-  cause.strength = std::abs(report.scale - 1.0) / report.scale_sigma;
-  cause.correction = Correction{.depth_factor = report.scale};
+                  scale, scale * relative_sigma),
+      fmt::format("[depth] scale = {:.4g} in rig.toml", info.rig.depth_units_per_m / scale));
+  cause.strength = difference / relative_sigma;
+  cause.correction = Correction{.depth_factor = scale};
   return {cause};
 }
 
@@ -267,17 +315,29 @@ std::vector<Cause> truth_causes(const TruthReport& report, const datasets::Seque
   return causes;
 }
 
+std::vector<std::string> undetermined_of_truth(const TruthReport& report) {
+  std::vector<std::string> missing;
+  if (!report.by_images && !report.by_gyro) missing.emplace_back("clock");
+  if (!report.rotation || report.rotation->sigma_rad.norm() > kMostTurnSigma_rad || !report.position ||
+      report.position_sigma.norm() > kMostPositionSigma_m)
+    missing.emplace_back("coordinate frame");
+  if (!report.scale) missing.emplace_back("scale");
+  return missing;
+}
+
 std::string truth_table_header() {
-  return fmt::format("{:<24} {:>7} {:>6} {:>16} {:>16} {:>14} {:>14} {:>9} {:>6}\n", "sequence", "covered",
+  return fmt::format("{:<24} {:>7} {:>6} {:>16} {:>16} {:>14} {:>14} {:>14} {:>6}\n", "sequence", "covered",
                      "noise", "late, images", "late, gyroscope", "camera turned", "camera moved", "scale",
                      "jumps") +
-         fmt::format("{:<24} {:>7} {:>6} {:>16} {:>16} {:>14} {:>14} {:>9} {:>6}\n", "", "%", "mm", "ms",
+         fmt::format("{:<24} {:>7} {:>6} {:>16} {:>16} {:>14} {:>14} {:>14} {:>6}\n", "", "%", "mm", "ms",
                      "ms", "deg", "mm", "%", "");
 }
 
 std::string truth_table_row(const std::string& name, const TruthReport& report,
                             const datasets::SequenceInfo& info) {
-  if (report.poses == 0) return fmt::format("{:<24} no ground truth\n", name);
+  if (report.poses == 0)
+    return fmt::format("{:<24} no ground truth{}\n", name,
+                       info.ground_truth.trajectory.poses.empty() ? "" : " at the time of the images");
   const auto lag_text = [](const std::optional<LagFit>& lag) {
     return lag ? fmt::format("{:+.1f} +- {:.1f}", 1e3 * lag->lag_s, 1e3 * lag->sigma_s) : std::string("n/a");
   };
@@ -289,9 +349,11 @@ std::string truth_table_row(const std::string& name, const TruthReport& report,
   if (report.position) {
     moved = fmt::format("{:.0f} +- {:.0f}", 1e3 * (*report.position - T_f_c.p).norm(),
                         1e3 * report.position_sigma.norm());
-    scale = fmt::format("{:+.1f}", 100.0 * (report.scale - 1.0));
   }
-  return fmt::format("{:<24} {:>7.1f} {:>6.2f} {:>16} {:>16} {:>14} {:>14} {:>9} {:>6}\n", name,
+  if (report.scale)
+    scale = fmt::format("{:+.1f} +- {:.1f}", 100.0 * (report.scale->scale - 1.0),
+                        100.0 * report.scale->scale * report.scale->relative_sigma);
+  return fmt::format("{:<24} {:>7.1f} {:>6.2f} {:>16} {:>16} {:>14} {:>14} {:>14} {:>6}\n", name,
                      100.0 * report.coverage, 1e3 * report.noise_m, lag_text(report.by_images),
                      lag_text(report.by_gyro), turned, moved, scale, report.jumps.size());
 }

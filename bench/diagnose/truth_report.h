@@ -3,9 +3,13 @@
 /// jumps.
 ///
 /// With relative motions A of the truth's frame f and B of the camera over 0.5 s, A X = X B for X = T_f_c
-/// (hand-eye calibration; Tsai and Lenz 1989). R_f_c comes from the angular rates (`fit_rotation`); position
+/// (hand-eye calibration; Tsai and Lenz 1989). R_f_c comes from the angular rates (`fit_rotation`). Position
 /// p of the camera in f and scale s of the camera's motion minimize
-///   sum |(R_A - I) p - s R_f_c p_B + p_A|^2.
+///   sum |(R_A - I) p - s R_f_c p_B + p_A|^2                        (errors of the truth), and
+///   sum |((R_A - I) p + p_A) / s - R_f_c p_B|^2                    (errors of the images).
+/// Errors of p_B reduce s by the first, errors of p_A increase it by the second: s is between both (Frisch
+/// 1934, Statistical Confluence Analysis). The result is their mean (of s the geometric one), and half of
+/// their difference is part of its deviation.
 #pragma once
 
 #include <optional>
@@ -17,6 +21,11 @@
 
 namespace stillpoint::bench {
 
+struct ScaleFit {
+  double scale = 1.0;           ///< true motion to that of the camera, > 0
+  double relative_sigma = 1.0;  ///< of its logarithm
+};
+
 struct TruthReport {
   std::size_t poses = 0;
   double coverage = 0.0;                    ///< fraction of the frames between poses at most 0.1 s apart
@@ -25,10 +34,9 @@ struct TruthReport {
   std::optional<RotationFit> rotation;      ///< R_f_c
   std::optional<Eigen::Vector3d> position;  ///< of the camera in f [m]
   Eigen::Vector3d position_sigma = Eigen::Vector3d::Zero();
-  double scale = 1.0;  ///< true motion to that of the camera
-  double scale_sigma = 1.0;
-  double noise_m = 0.0;          ///< white noise per axis, by fourth differences
-  std::vector<Timestamp> jumps;  ///< steps that the neighboring ones do not have
+  std::optional<ScaleFit> scale;  ///< nullopt if its deviation exceeds 25 %
+  double noise_m = 0.0;           ///< white noise per axis, by fourth differences
+  std::vector<Timestamp> jumps;   ///< steps that the neighboring ones do not have
 };
 
 /// @param visual trajectory of the camera by a run without IMU; may be empty
@@ -38,6 +46,9 @@ struct TruthReport {
 
 /// What the report contradicts.
 [[nodiscard]] std::vector<Cause> truth_causes(const TruthReport& report, const datasets::SequenceInfo& info);
+
+/// Which of "clock", "coordinate frame" and "scale" the motion does not determine.
+[[nodiscard]] std::vector<std::string> undetermined_of_truth(const TruthReport& report);
 
 /// Header and row of a table.
 [[nodiscard]] std::string truth_table_header();

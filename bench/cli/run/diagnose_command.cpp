@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
@@ -69,6 +70,37 @@ DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::
       .on_step = [](const std::string& step) { spdlog::debug("{}", step); }};
 }
 
+/// What --truth found of all sequences.
+struct TruthFindings {
+  std::string contradictions, undetermined;  ///< one line each
+  bool compared = false;                     ///< at least one property of a sequence
+
+  void add(const datasets::SequenceInfo& info, const TruthReport& report) {
+    for (const Cause& cause : truth_causes(report, info))
+      contradictions += fmt::format("{}: {}: {}; {}\n", info.name, cause.name, cause.evidence, cause.remedy);
+    constexpr std::size_t kProperties = 3;
+    const std::vector<std::string> missing = undetermined_of_truth(report);
+    compared = compared || missing.size() < kProperties;
+    if (missing.size() == kProperties)
+      undetermined += fmt::format("{}: nothing could be compared: {}\n", info.name,
+                                  report.poses == 0 ? "no ground truth"
+                                                    : "too few images, or too little rotation "
+                                                      "that images and ground truth have in common");
+    else if (!missing.empty())
+      undetermined +=
+          fmt::format("{}: not determined by the motion: {}\n", info.name, fmt::join(missing, ", "));
+  }
+
+  [[nodiscard]] std::string text() const {
+    if (!contradictions.empty() || !compared) return contradictions + undetermined;
+    return undetermined + "nothing that the other sensors contradict\n";
+  }
+  [[nodiscard]] int exit_code() const {
+    if (!contradictions.empty()) return kExitFindings;
+    return compared ? kExitOk : kExitInconclusive;
+  }
+};
+
 /// --truth: one row per sequence, and what it contradicts. A sequence of several that cannot be read is
 /// reported in its row.
 int check_truths(const DiagnoseArguments& arguments) {
@@ -80,7 +112,7 @@ int check_truths(const DiagnoseArguments& arguments) {
       throw InputError("--truth", "no sequence is registered; name one, or use `stillpoint data add`");
   }
   std::cout << truth_table_header();
-  std::string findings;
+  TruthFindings findings;
   for (const std::string& name : names) {
     try {
       const auto start = std::chrono::steady_clock::now();
@@ -88,16 +120,14 @@ int check_truths(const DiagnoseArguments& arguments) {
       if (!stream || interrupt_requested()) return kExitInterrupted;
       const TruthReport report = check_truth(*stream, options_of(arguments, stream->info(), start));
       std::cout << truth_table_row(stream->info().name, report, stream->info()) << std::flush;
-      for (const Cause& cause : truth_causes(report, stream->info()))
-        findings +=
-            fmt::format("{}: {}: {}; {}\n", stream->info().name, cause.name, cause.evidence, cause.remedy);
+      findings.add(stream->info(), report);
     } catch (const InputError& error) {
       if (names.size() == 1) throw;
       std::cout << fmt::format("{:<24} {}\n", name, error.what());
     }
   }
-  std::cout << (findings.empty() ? "nothing that the other sensors contradict\n" : findings);
-  return findings.empty() ? kExitOk : kExitFindings;
+  std::cout << findings.text();
+  return findings.exit_code();
 }
 
 int diagnose_sequence(const DiagnoseArguments& arguments) {

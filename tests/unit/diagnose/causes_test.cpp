@@ -2,6 +2,7 @@
 // Causes by the data alone, and the corrections that undo them.
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -139,17 +140,31 @@ TEST(ImageCauses, ReplaceRoundedStampsByAConstantRate) {
     EXPECT_LT(std::abs(seconds_between(rig.survey.frames[i].t, rig.info.frame_times[i])), 0.006);
 }
 
+/// How a camera moves, and what its images tell of it.
+struct CameraMotion {
+  double amplitude_m = 0.5;
+  double visual_noise_m = 0.0;  ///< standard deviation per axis and pose
+  double visual_scale = 1.0;    ///< motion by images to the true one
+};
+
 /// A camera that turns and moves, and its ground truth: poses of a frame f, late by `late_s`.
 struct MovingCamera {
-  explicit MovingCamera(const Pose& T_c_f, double late_s = 0.0) {
+  explicit MovingCamera(const Pose& T_c_f, double late_s = 0.0, const CameraMotion& motion = {}) {
+    std::mt19937_64 random(7);  // NOLINT(cert-msc51-cpp,cert-msc32-c): the same noise in all runs
+    std::normal_distribution<double> noise(0.0, std::max(1e-12, motion.visual_noise_m));
     Pose T_w_c;
     constexpr int kPerFrame = 4;
     const int last = kPerFrame * 30 * 8 - kPerFrame;
     for (int i = 0; i <= last; ++i) {
       const double t = i / (30.0 * kPerFrame), step_s = 1.0 / (30.0 * kPerFrame);
-      T_w_c.p = {0.5 * std::sin(1.1 * t), 0.4 * std::cos(1.7 * t), 0.3 * std::sin(2.3 * t)};
+      T_w_c.p = motion.amplitude_m *
+                Eigen::Vector3d(std::sin(1.1 * t), 0.8 * std::cos(1.7 * t), 0.6 * std::sin(2.3 * t));
       const StampedPose pose{from_seconds(10.0 + t), T_w_c};
-      if (i % kPerFrame == 0) visual.poses.push_back(pose);
+      if (i % kPerFrame == 0) {
+        visual.poses.push_back(pose);
+        Eigen::Vector3d& p = visual.poses.back().T_w_f.p;
+        p = motion.visual_scale * p + Eigen::Vector3d(noise(random), noise(random), noise(random));
+      }
       rig.info.ground_truth.trajectory.poses.push_back({after(pose.t, late_s), T_w_c * T_c_f});
       T_w_c.q = (T_w_c.q * Eigen::Quaterniond(exp_so3(step_s * TurningRig::rate_at(t + 0.5 * step_s))))
                     .normalized();
@@ -197,6 +212,36 @@ TEST(TruthCauses, TellAnotherBodyAndTheCorrectionHasItsPose) {
   const Pose& corrected = camera.rig.info.ground_truth.T_c_f;
   EXPECT_LT(corrected.q.angularDistance(T_c_f.q), 0.005);
   EXPECT_LT((corrected.p - T_c_f.p).norm(), 0.005);
+}
+
+/// Errors of the motion by images once reduced the scale of a camera that hardly moves to 0.69 +- 0.07.
+TEST(TruthCauses, TellNoScaleThatErrorsOfTheImagesReduce) {
+  for (const double noise_m : {0.001, 0.002, 0.004}) {
+    const MovingCamera camera(Pose{}, 0.0, {.amplitude_m = 0.02, .visual_noise_m = noise_m});
+    const std::vector<Cause> causes = camera.causes();
+    EXPECT_TRUE(causes.empty()) << noise_m << ": " << causes.front().evidence;
+  }
+}
+
+TEST(TruthCauses, TellAScaleThatTheMotionDetermines) {
+  const MovingCamera camera(Pose{}, 0.0, {.visual_noise_m = 0.004, .visual_scale = 1.25});
+  const std::vector<Cause> causes = camera.causes();
+  const Cause* const found = cause_named(causes, "depth_scale");
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->correction->depth_factor, 0.8, 0.01);
+}
+
+TEST(TruthReport, NamesWhatTheMotionDoesNotDetermine) {
+  const auto undetermined = [](const MovingCamera& camera) {
+    return undetermined_of_truth(truth_report(camera.rig.info, camera.rig.survey, camera.visual));
+  };
+  EXPECT_TRUE(undetermined(MovingCamera(Pose{})).empty());
+  EXPECT_EQ(undetermined(MovingCamera(Pose{}, 0.0, {.amplitude_m = 0.001, .visual_noise_m = 0.002})),
+            std::vector<std::string>{"scale"});
+  MovingCamera resting(Pose{});
+  for (FrameStatistics& frame : resting.rig.survey.frames) frame.T_now_last = Pose{};
+  resting.rig.info.imu.clear();
+  EXPECT_EQ(undetermined(resting).size(), 3U);
 }
 
 TEST(CorrectedPart, CutsMirrorsAndScalesDepth) {
