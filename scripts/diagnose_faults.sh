@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Plants single faults in sequences of the OpenLORIS layout (`stillpoint data synth`), and writes how `diagnose` ranks
-# them: CSV with the columns sequence, fault, expected, rank (0: not found), effect, found, seconds. Faults that
+# them: CSV with the columns sequence, fault, expected, rank (0: not found), effect, found, seconds, least_effect (the
+# smallest change of the error that could count; empty if the diagnosis failed). Faults that
 # `--fault` has are injected; others are changes of copies of the files. Two faults at once, NAME+NAME in PAIRS (their
 # list, with blanks; instead of the single ones), have the rank of the later one.
 #   scripts/diagnose_faults.sh PROGRAM TABLE.csv SEQUENCE...        BUDGET (30s) and FAULTS (regular expression, all)
@@ -97,7 +98,7 @@ changed_copy() { # SEQUENCE FAULT FOLDER: the files of the sequence by links, an
   esac
 }
 
-[[ -e "$table" ]] || echo "sequence,fault,expected,rank,effect_percent,found,seconds" >"$table"
+[[ -e "$table" ]] || echo "sequence,fault,expected,rank,effect_percent,found,seconds,least_effect_percent" >"$table"
 for sequence in "$@"; do
   while IFS='|' read -r fault expected how; do
     fault="${fault// /}" expected="${expected// /}" how="${how// /}"
@@ -116,7 +117,7 @@ for sequence in "$@"; do
     begin=$SECONDS
     "$program" diagnose "$folder" --json --budget "${BUDGET:-30s}" --length 10 "${options[@]}" >"$work/out.json" 2>"$work/err" && status=0 || status=$?
     if ((status > 1)); then  # an error is not "nothing found"
-      echo "$(basename "$sequence"),$fault,$expected,failed,,$(tail -n 1 "$work/err" | tr ',' ';'),$((SECONDS - begin))" >>"$table"
+      echo "$(basename "$sequence"),$fault,$expected,failed,,$(tail -n 1 "$work/err" | tr ',' ';'),$((SECONDS - begin))," >>"$table"
       rm -rf "${work:?}"/[01]
       continue
     fi
@@ -125,6 +126,7 @@ for sequence in "$@"; do
       /"id":/ { gsub(/[",]/, "", $2); ids[++n] = $2 }
       /"error_ratio":/ { gsub(/,/, "", $2); ratio[n] = $2 }
       /"less_effect":/ { effective = n }
+      /"least_effect":/ { gsub(/,/, "", $2); least = $2 }
       END {
         wanted = split(expected, causes, "+")
         for (i = 1; i <= n; ++i) {
@@ -133,8 +135,8 @@ for sequence in "$@"; do
             if (ids[i] == causes[k]) { named++; rank = i; effect = ratio[i]; causes[k] = "" }
         }
         if (named < wanted) rank = 0
-        printf "%s,%s,%s,%d,%s,%s,%d\n", sequence, fault, expected, rank,
-          effect == "" || effect == "null" ? "" : sprintf("%+.0f", 100 * (effect - 1)), found, seconds
+        printf "%s,%s,%s,%d,%s,%s,%d,%.0f\n", sequence, fault, expected, rank,
+          effect == "" || effect == "null" ? "" : sprintf("%+.0f", 100 * (effect - 1)), found, seconds, 100 * least
       }' "$work/out.json" | tee -a "$table"
     rm -rf "${work:?}"/[01]
   done <<<"$faults"
