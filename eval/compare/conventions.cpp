@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -29,6 +30,20 @@ Trajectory thinned(const Trajectory& path) {
   Trajectory result{.frame = path.frame, .poses = {}};
   for (std::size_t i = 0; i < path.poses.size(); i += step) result.poses.push_back(path.poses[i]);
   return result;
+}
+
+/// The poses between which those of the estimate lie: those that its matches are interpolated from.
+Trajectory around(const Trajectory& gt, const Trajectory& est) {
+  Trajectory part{.frame = gt.frame, .poses = {}};
+  std::size_t next = 0;  // index of the first pose that is not copied
+  for (const InterpolatedPair& pair :
+       associate_interpolated(gt, est, std::numeric_limits<double>::infinity())) {
+    const std::size_t end = std::min<std::size_t>(pair.gt + 2, gt.poses.size());
+    for (std::size_t i = std::max<std::size_t>(next, pair.gt); i < end; ++i)
+      part.poses.push_back(gt.poses[i]);
+    next = end;
+  }
+  return part;
 }
 
 /// Errors before or after the correction of a suspected violation.
@@ -68,14 +83,15 @@ std::optional<OrderFinding> find_quaternion_order(const LoadedTrajectory& gt, co
                                                   double offset_s) {
   Trajectory shifted = thinned(est.trajectory);
   for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, offset_s);
-  const std::optional<Errors> current = errors_of(gt.trajectory, shifted);
+  const Trajectory truth = around(gt.trajectory, shifted);
+  const std::optional<Errors> current = errors_of(truth, shifted);
   if (!current || current->rpe_deg_per_s < kMinOrderRpe) return std::nullopt;
   std::optional<OrderFinding> best;
   for (const auto& [other_gt, other_est] : {std::pair(false, true), {true, false}, {true, true}}) {
     if (other_gt && gt.order_source == OrderSource::kNone) continue;
     if (other_est && est.order_source == OrderSource::kNone) continue;
     const std::optional<Errors> errors =
-        errors_of(other_gt ? with_other_order(gt.trajectory, gt.order) : gt.trajectory,
+        errors_of(other_gt ? with_other_order(truth, gt.order) : truth,
                   other_est ? with_other_order(shifted, est.order) : shifted);
     if (!errors) continue;
     // Reading both in the other order exchanges a rotation of the world for one of the body: it also removes
@@ -130,7 +146,7 @@ std::optional<ConventionFinding> stamp_unit(const Trajectory& gt, const Trajecto
 }
 
 double position_rmse(MatchView matches, Alignment kind) {
-  return statistics(ate_errors(matches, align(matches, kind).S_w_v).translation_m)->rmse;
+  return position_rmse(matches, align(matches, kind).S_w_v);
 }
 
 std::optional<ConventionFinding> mirrored(const Trajectory& gt, const Trajectory& est) {

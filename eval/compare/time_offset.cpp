@@ -46,7 +46,7 @@ double median_interval_s(const Trajectory& path) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < path.poses.size(); i += step)
     intervals.push_back(seconds_between(path.poses[i - 1].t, path.poses[i].t));
-  return reordering_percentile(intervals, 0.5).value_or(0.0);
+  return percentile(intervals, 0.5).value_or(0.0);
 }
 
 /// Speed [m/s] and rotation rate [rad/s] between grid points; NaN in gaps.
@@ -139,7 +139,7 @@ class OffsetError {
   [[nodiscard]] double at(double offset_s, Alignment kind = Alignment::kSim3) const {
     const PoseMatches matches = matches_at(offset_s);
     if (matches.size() < min_matches_) return kInfinity;
-    return statistics(ate_errors(matches, align(matches, kind).S_w_v).translation_m)->rmse;
+    return position_rmse(matches, align(matches, kind).S_w_v);
   }
 
   /// From now on, half of the largest number of matches at these offsets is required.

@@ -142,6 +142,17 @@ TextBlocks::TextBlocks(const std::filesystem::path& file) : name_(file.string())
   while (!has_two_records(block()) && unread_ > 0) read_more();
 }
 
+std::size_t TextBlocks::estimated_lines() const {
+  constexpr double kMargin = 1.05;
+  constexpr double kMinLineBytes = 32.0;
+  const std::string_view text = block();
+  if (text.empty()) return 0;
+  const auto lines = static_cast<double>(1 + std::count(text.begin(), text.end(), '\n'));
+  const double bytes = static_cast<double>(buffer_.size()) + static_cast<double>(unread_);
+  return static_cast<std::size_t>(
+      std::min(bytes / kMinLineBytes, kMargin * lines * bytes / static_cast<double>(text.size())));
+}
+
 void TextBlocks::read_more() {
   do {
     const std::size_t bytes = std::min<std::uint64_t>(unread_, kBlockBytes);

@@ -38,6 +38,10 @@ class TextBlocks {
     return std::string_view(buffer_).substr(begin_, end_ - begin_);
   }
 
+  /// Number of lines of the file, as far as the current block tells it, and rather too large; at most one per
+  /// 32 bytes.
+  [[nodiscard]] std::size_t estimated_lines() const;
+
   /// Reads the next block.
   /// @throws InputError if the file cannot be read
   void advance();

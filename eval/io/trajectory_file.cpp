@@ -144,6 +144,7 @@ constexpr RowFormat kOrbSlam3{TimeUnit::kNanoseconds, QuaternionOrder::kXyzw, "n
 struct NamedText {
   std::string_view text;
   const std::string& name;
+  std::size_t estimated_rows = 0;  ///< of the file
 };
 
 /// Where the values of a row are.
@@ -206,7 +207,7 @@ struct RowRules {
 /// @param all the records of the whole file
 LoadedTrajectory parse_rows(const NamedText& start, RowReader all, const RowRules& rules, FaultLog& faults) {
   const RowLayout layout = layout_of(start, rules.format);
-  TrajectoryBuilder builder;
+  TrajectoryBuilder builder(start.estimated_rows);
   for_each_row(std::move(all), faults, [&](const TextRow& row) {
     if (row.line == layout.header_line) return;
     if (row.fields.size() < 8 && !layout.is_named) {
@@ -229,7 +230,7 @@ LoadedTrajectory parse_text(const NamedText& source, const RowRules& rules, Faul
 
 LoadedTrajectory parse_file(TextBlocks& file, const std::string& name, const RowRules& rules,
                             FaultLog& faults) {
-  return parse_rows({file.block(), name}, RowReader(file, name), rules, faults);
+  return parse_rows({file.block(), name, file.estimated_lines()}, RowReader(file, name), rules, faults);
 }
 
 /// A ground-truth file.

@@ -156,6 +156,9 @@ using PoseColumns = std::array<std::size_t, 7>;
 /// Collects the poses of a file in order of time.
 class TrajectoryBuilder {
  public:
+  /// @param rows an estimate of their number: memory that grows is copied, and takes twice as much meanwhile
+  explicit TrajectoryBuilder(std::size_t rows = 0) { loaded_.trajectory.poses.reserve(rows); }
+
   /// Adds the pose of a row. A row without a pose, and one with the stamp of an earlier row, is counted and
   /// skipped; one that is up to `kMaxDisorder_s` earlier than the latest pose is counted and sorted in.
   /// @throws InputError if it is even earlier

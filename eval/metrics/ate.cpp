@@ -26,6 +26,15 @@ AteErrors ate_errors(MatchView matches, const Similarity& S_w_v) {
   return errors;
 }
 
+double position_rmse(MatchView matches, const Similarity& S_w_v) {
+  double sse = 0.0;
+  for (const MatchedPose& match : matches) {
+    const double error_m = (S_w_v * match.est.p - match.gt.p).norm();
+    sse += error_m * error_m;
+  }
+  return std::sqrt(sse / static_cast<double>(matches.size()));
+}
+
 AteErrors ate_errors(MatchView matches, const Similarity& S_w_v, const CompletedAlignment& completed) {
   AteErrors errors = ate_errors(matches, S_w_v);
   if (completed.source != RotationSource::kPositions)
@@ -52,7 +61,7 @@ double median_interval_s(std::span<const Timestamp> stamps) {
   intervals.reserve(stamps.size());
   for (std::size_t i = 1; i < stamps.size(); ++i)
     intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
-  return reordering_percentile(intervals, 0.5).value_or(0.0);
+  return percentile(intervals, 0.5).value_or(0.0);
 }
 
 }  // namespace

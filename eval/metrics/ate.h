@@ -44,6 +44,9 @@ struct AteErrors {
 [[nodiscard]] AteErrors ate_errors(MatchView matches, const Similarity& S_w_v,
                                    const CompletedAlignment& completed);
 
+/// RMSE of e_k [m], without the other values of `ate_errors`; NaN without matches.
+[[nodiscard]] double position_rmse(MatchView matches, const Similarity& S_w_v);
+
 struct AteResult {
   Statistics translation_m;
   Statistics rotation_deg;

@@ -165,11 +165,34 @@ std::size_t nearest_by_bisection(std::span<const double> stamps, double t) {
   return best;
 }
 
+/// Finds the closest of increasing stamps to times that increase from call to call.
+class NearestStamps {
+ public:
+  explicit NearestStamps(std::span<const double> stamps) : stamps_(stamps) {}
+
+  /// The result of `nearest_by_bisection`, which decides among equally close stamps.
+  [[nodiscard]] std::size_t nearest(double t) {
+    const std::size_t count = stamps_.size();
+    while (last_ + 1 < count && stamps_[last_ + 1] <= t) ++last_;
+    const std::size_t next = last_ + 1;
+    if (!(stamps_[last_] <= t) || next == count) return nearest_by_bisection(stamps_, t);
+    const double below = t - stamps_[last_];
+    const double above = stamps_[next] - t;
+    if (below < above && (last_ == 0 || stamps_[last_ - 1] < stamps_[last_])) return last_;
+    if (above < below && (next + 1 == count || stamps_[next] < stamps_[next + 1])) return next;
+    return nearest_by_bisection(stamps_, t);
+  }
+
+ private:
+  std::span<const double> stamps_;
+  std::size_t last_ = 0;  ///< the last stamp until the last time
+};
+
 double median_interval(std::span<const double> stamps) {
   std::vector<double> intervals;
   intervals.reserve(stamps.size());
   for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
-  return reordering_percentile(intervals, 0.5).value_or(0.0);
+  return percentile(intervals, 0.5).value_or(0.0);
 }
 
 double median_interval(MatchView matches) {
@@ -177,7 +200,7 @@ double median_interval(MatchView matches) {
   intervals.reserve(matches.size());
   for (std::size_t i = 1; i < matches.size(); ++i)
     intervals.push_back(seconds_between(matches.time(i - 1), matches.time(i)));
-  return reordering_percentile(intervals, 0.5).value_or(0.0);
+  return percentile(intervals, 0.5).value_or(0.0);
 }
 
 /// Length of a step between consecutive poses in a unit that is not the time.
@@ -200,40 +223,37 @@ std::vector<double> axis_of(const Trajectory& est, RpeUnit unit) {
 
 constexpr PoseIndex kNoPose = static_cast<PoseIndex>(-1);
 
-/// Nearest-neighbor lookup of ground-truth stamps; the limit is that of the TUM tools.
-class GroundTruthLookup {
- public:
-  explicit GroundTruthLookup(const Trajectory& gt)
-      : stamps_(stamps_of(gt)), max_difference_s_(2.0 * median_interval(stamps_)) {}
-
-  /// `kNoPose` without a stamp close enough.
-  [[nodiscard]] PoseIndex nearest(double t) const {
-    const std::size_t index = nearest_by_bisection(stamps_, t);
-    return std::abs(stamps_[index] - t) > max_difference_s_ ? kNoPose : static_cast<PoseIndex>(index);
+/// Index of the ground-truth stamp closest to each estimated one; `kNoPose` without a stamp within the limit
+/// of the TUM tools, twice the median interval.
+std::vector<PoseIndex> nearest_truth(const Trajectory& gt, const Trajectory& est, double offset_s) {
+  const std::vector<double> stamps = stamps_of(gt);
+  const double max_difference_s = 2.0 * median_interval(stamps);
+  NearestStamps lookup(stamps);
+  std::vector<PoseIndex> nearest;
+  nearest.reserve(est.poses.size());
+  for (const StampedPose& pose : est.poses) {
+    const double t = stamp_as_double(pose.t) + offset_s;
+    const std::size_t index = lookup.nearest(t);
+    nearest.push_back(std::abs(stamps[index] - t) > max_difference_s ? kNoPose
+                                                                     : static_cast<PoseIndex>(index));
   }
-
- private:
-  std::vector<double> stamps_;
-  double max_difference_s_;
-};
+  return nearest;
+}
 
 }  // namespace
 
 std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const RpeOptions& options) {
   if (gt.poses.size() < 2 || est.poses.size() < 2) return std::nullopt;
-  const GroundTruthLookup lookup(gt);
-  const std::vector<double> stamps = stamps_of(est);
+  const std::vector<PoseIndex> nearest = nearest_truth(gt, est, options.offset_s);
   const std::vector<double> axis = axis_of(est, options.unit);
+  NearestStamps ends(axis);
   RpeResult result;
   std::vector<double> translation_m;
   std::vector<double> rotation_deg;
   translation_m.reserve(axis.size());
   rotation_deg.reserve(axis.size());
-  std::vector<PoseIndex> nearest;  // of each estimated pose; kNoPose without ground truth
-  nearest.reserve(stamps.size());
-  for (const double t : stamps) nearest.push_back(lookup.nearest(t + options.offset_s));
   for (std::size_t i = 0; i < axis.size(); ++i) {
-    const std::size_t j = nearest_by_bisection(axis, axis[i] + options.delta);
+    const std::size_t j = ends.nearest(axis[i] + options.delta);
     if (j + 1 == axis.size()) continue;
     const PoseIndex gt_i = nearest[i];
     const PoseIndex gt_j = nearest[j];
@@ -249,8 +269,8 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
     rotation_deg.push_back(rotation_angle(error.q) * 180.0 / std::numbers::pi);
   }
   if (translation_m.size() == result.self_pairs) return std::nullopt;
-  result.translation_m = *reordering_statistics(translation_m);
-  result.rotation_deg = *reordering_statistics(rotation_deg);
+  result.translation_m = *statistics(translation_m);
+  result.rotation_deg = *statistics(rotation_deg);
   return result;
 }
 
@@ -262,8 +282,7 @@ StrictRpeResult strict_rpe(MatchView matches, double delta_s) {
   RelativeErrors errors = relative_errors(matches, found.pairs, false);
   result.dropped = found.dropped;
   if (!found.pairs.empty()) {
-    result.errors =
-        StrictRpe{*reordering_statistics(errors.translation_m), *reordering_statistics(errors.rotation_deg)};
+    result.errors = StrictRpe{*statistics(errors.translation_m), *statistics(errors.rotation_deg)};
   }
   return result;
 }
@@ -298,13 +317,13 @@ std::vector<SegmentErrors> segment_errors(MatchView matches, const SegmentOption
       for (std::size_t k = 0; k < found.pairs.size(); ++k) found.pairs[k].from = static_cast<PoseIndex>(k);
     }
     errors = relative_errors(matches, found.pairs, true, std::move(errors));
-    const Statistics translation_m = *reordering_statistics(errors.translation_m);
+    const Statistics translation_m = *statistics(errors.translation_m);
     static_assert(kPercentiles.front() == 75);
     segments.push_back({.length_m = length_m,
                         .translation_m = translation_m,
-                        .rotation_deg = *reordering_statistics(errors.rotation_deg),
-                        .yaw_deg = *reordering_statistics(errors.yaw_deg),
-                        .translation_lower_quartile_m = *reordering_percentile(errors.translation_m, 0.25),
+                        .rotation_deg = *statistics(errors.rotation_deg),
+                        .yaw_deg = *statistics(errors.yaw_deg),
+                        .translation_lower_quartile_m = *percentile(errors.translation_m, 0.25),
                         .translation_upper_quartile_m = translation_m.percentiles.front(),
                         .dropped = found.dropped});
   }

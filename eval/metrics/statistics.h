@@ -28,16 +28,10 @@ struct Statistics {
 /// @return nullopt for an empty list, which is reported as "n/a", never as 0
 [[nodiscard]] std::optional<Statistics> statistics(std::span<const double> values);
 
-/// The same without a copy: the values are reordered.
-[[nodiscard]] std::optional<Statistics> reordering_statistics(std::span<double> values);
-
 /// Percentile with linear interpolation between the closest ranks (NumPy's default).
 /// @param values in any order
 /// @param fraction in [0, 1]
 /// @return nullopt for an empty list
 [[nodiscard]] std::optional<double> percentile(std::span<const double> values, double fraction);
-
-/// The same without a copy: the values are reordered.
-[[nodiscard]] std::optional<double> reordering_percentile(std::span<double> values, double fraction);
 
 }  // namespace stillpoint::eval

@@ -335,11 +335,20 @@ AlignedMatches strictly_aligned(MatchView matches, Alignment kind, std::size_t f
   return result;
 }
 
+/// Number of estimated poses between the first and the last one of the ground truth.
+std::size_t covered_poses(const EvaluationInput& input) {
+  if (input.gt.poses.empty()) return 0;
+  const auto begin = std::ranges::lower_bound(input.est.poses, input.gt.poses.front().t, {}, &StampedPose::t);
+  const auto end = std::ranges::upper_bound(input.est.poses, input.gt.poses.back().t, {}, &StampedPose::t);
+  return begin < end ? static_cast<std::size_t>(end - begin) : 0;
+}
+
 /// Whether the matches and their SE(3) alignment are those of the correct rate.
 bool has_errors_of_correct_rate(const EvaluationInput& input, MatchView matches, Alignment kind) {
   if (kind != Alignment::kSe3 || input.options.align_first_n > 0 ||
       input.options.max_difference_s.value_or(kStrictMaxGap) > kCorrectRateGap_s)
     return false;
+  if (matches.size() == covered_poses(input)) return true;  // a longer gap adds none
   return associate_interpolated(input.gt, input.est, kCorrectRateGap_s).size() == matches.size();
 }
 

@@ -145,19 +145,108 @@ struct TrajectoryStamps {
   const std::vector<StampedPose>& poses;
 
   [[nodiscard]] std::size_t size() const { return poses.size(); }
+  [[nodiscard]] bool empty() const { return poses.empty(); }
   [[nodiscard]] Timestamp operator[](std::size_t i) const { return poses[i].t; }
 };
+
+/// Stamps of a list that are not matched yet.
+template <class Stamps>
+struct RemainingStamps {
+  const Stamps& all;
+  std::vector<PoseIndex> indices;
+
+  [[nodiscard]] std::size_t size() const { return indices.size(); }
+  [[nodiscard]] Timestamp operator[](std::size_t i) const { return all[indices[i]]; }
+};
+
+/// Pairs of which each stamp is closer to the other than to any other one. Greedy matching contains them,
+/// since nothing takes one of the two before, and matches the remaining stamps as without them. They are
+/// nearly all pairs of most recordings, and are found without sorting.
+template <class Stamps>
+class MutualPairs {
+ public:
+  MutualPairs(const Stamps& gt, const Stamps& est, const AssociationOptions& options)
+      : gt_(gt),
+        est_(est),
+        max_difference_ns_(1e9 * options.max_difference_s),
+        offset_ns_(1e9 * options.offset_s) {}
+
+  [[nodiscard]] std::vector<IndexPair> find() const {
+    std::vector<IndexPair> pairs;
+    pairs.reserve(std::min(gt_.size(), est_.size()));
+    std::size_t g = 0;
+    for (std::size_t e = 0; e < est_.size() && !gt_.empty(); ++e) {
+      const double t = estimated(e);
+      while (g + 1 < gt_.size() && distance(g + 1, t) <= distance(g, t)) ++g;
+      if (is_mutual(g, e)) pairs.push_back({static_cast<PoseIndex>(g), static_cast<PoseIndex>(e)});
+    }
+    return pairs;
+  }
+
+ private:
+  // [ns]; more than the rounding of differences of stamps in double precision, so that equal ones are
+  // left to the order of matching
+  static constexpr double kMargin = 1e4;
+
+  [[nodiscard]] double estimated(std::size_t e) const { return static_cast<double>(est_[e].ns) + offset_ns_; }
+  [[nodiscard]] double distance(std::size_t g, double t) const {
+    return std::abs(static_cast<double>(gt_[g].ns) - t);
+  }
+
+  [[nodiscard]] bool is_mutual(std::size_t g, std::size_t e) const {
+    const double t = estimated(e);
+    const double limit = distance(g, t) + kMargin;
+    return limit < max_difference_ns_ && (g == 0 || limit < distance(g - 1, t)) &&
+           (g + 1 == gt_.size() || limit < distance(g + 1, t)) &&
+           (e == 0 || limit < distance(g, estimated(e - 1))) &&
+           (e + 1 == est_.size() || limit < distance(g, estimated(e + 1)));
+  }
+
+  const Stamps& gt_;
+  const Stamps& est_;
+  double max_difference_ns_;
+  double offset_ns_;
+};
+
+/// The indices below `count` that `member` of no pair has.
+std::vector<PoseIndex> unmatched(std::size_t count, const std::vector<IndexPair>& pairs,
+                                 PoseIndex IndexPair::*member) {
+  std::vector<PoseIndex> indices;
+  auto pair = pairs.begin();
+  for (PoseIndex i = 0; i < count; ++i) {
+    if (pair != pairs.end() && (*pair).*member == i) {
+      ++pair;
+    } else {
+      indices.push_back(i);
+    }
+  }
+  return indices;
+}
+
+template <class Stamps>
+std::vector<IndexPair> associate_greedily(const Stamps& gt, const Stamps& est,
+                                          const AssociationOptions& options) {
+  std::vector<IndexPair> pairs = MutualPairs(gt, est, options).find();
+  const RemainingStamps<Stamps> gt_rest{gt, unmatched(gt.size(), pairs, &IndexPair::gt)};
+  const RemainingStamps<Stamps> est_rest{est, unmatched(est.size(), pairs, &IndexPair::est)};
+  const auto mutual = static_cast<std::ptrdiff_t>(pairs.size());
+  for (const IndexPair& pair : GreedyMatcher(gt_rest, est_rest, options).run())
+    pairs.push_back({gt_rest.indices[pair.gt], est_rest.indices[pair.est]});
+  std::inplace_merge(pairs.begin(), pairs.begin() + mutual, pairs.end(),
+                     [](const IndexPair& a, const IndexPair& b) { return a.est < b.est; });
+  return pairs;
+}
 
 }  // namespace
 
 std::vector<IndexPair> associate_tum(std::span<const Timestamp> gt, std::span<const Timestamp> est,
                                      const AssociationOptions& options) {
-  return GreedyMatcher(gt, est, options).run();
+  return associate_greedily(gt, est, options);
 }
 
 std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
                                      const AssociationOptions& options) {
-  return GreedyMatcher(TrajectoryStamps{gt.poses}, TrajectoryStamps{est.poses}, options).run();
+  return associate_greedily(TrajectoryStamps{gt.poses}, TrajectoryStamps{est.poses}, options);
 }
 
 std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est,

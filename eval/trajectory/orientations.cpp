@@ -145,14 +145,16 @@ CompletedAlignment complete_rotation(MatchView matches, const Similarity& S_w_v,
 
 namespace {
 
-/// Largest rotation from the first pose [deg].
-double turn_deg(const Trajectory& trajectory) {
+/// Largest rotation from the first pose [deg], or the first one of at least `enough_deg`.
+double turn_deg(const Trajectory& trajectory, double enough_deg) {
   double largest = 0.0;
   for (const StampedPose& pose : trajectory.poses) {
     const Eigen::Quaterniond turned = trajectory.poses.front().T_w_f.q.conjugate() * pose.T_w_f.q;
-    largest = std::max(largest, 2.0 * std::atan2(turned.vec().norm(), std::abs(turned.w())));
+    const double turn = 2.0 * std::atan2(turned.vec().norm(), std::abs(turned.w()));
+    largest = std::max(largest, turn * 180.0 / std::numbers::pi);
+    if (largest >= enough_deg) break;
   }
-  return largest * 180.0 / std::numbers::pi;
+  return largest;
 }
 
 /// RMS of the rotations between aligned poses [deg]; 0 without matches.
@@ -174,8 +176,8 @@ std::string missing_orientations(const Trajectory& gt, const Trajectory& est, do
   constexpr double kConstant = 1e-5;  // [deg]
   constexpr double kTurning = 5.0;    // [deg]
   if (gt.poses.size() < 2 || est.poses.size() < 2) return "";
-  const double gt_deg = turn_deg(gt);
-  const double est_deg = turn_deg(est);
+  const double gt_deg = turn_deg(gt, kTurning);
+  const double est_deg = turn_deg(est, kTurning);
   if (std::min(gt_deg, est_deg) > kConstant) return "";
   std::string disagreement = "the other file turns";
   if (std::max(gt_deg, est_deg) < kTurning) {

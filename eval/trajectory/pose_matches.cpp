@@ -7,8 +7,6 @@
 namespace stillpoint::eval {
 namespace {
 
-bool is_between(const InterpolatedPair& pair) { return pair.fraction > 0.0; }
-
 std::vector<MatchedPose> copied(const PoseMatches& matches) {
   std::vector<MatchedPose> poses;
   poses.reserve(matches.size());
@@ -29,28 +27,6 @@ PoseMatches::PoseMatches(const Trajectory& gt, const Trajectory& est, std::vecto
     const Eigen::Quaterniond& from = gt_[pair.gt].T_w_f.q;
     q_gt_.push_back(is_between(pair) ? from.slerp(pair.fraction, gt_[pair.gt + 1].T_w_f.q) : from);
   }
-}
-
-Pose PoseMatches::gt_pose(std::size_t i) const {
-  if (interpolated_.empty()) return gt_[pairs_[i].gt].T_w_f;
-  const InterpolatedPair& pair = interpolated_[i];
-  const Pose& from = gt_[pair.gt].T_w_f;
-  if (!is_between(pair)) return from;
-  return {q_gt_[i], (1.0 - pair.fraction) * from.p + pair.fraction * gt_[pair.gt + 1].T_w_f.p};
-}
-
-const StampedPose& PoseMatches::est_pose(std::size_t i) const {
-  return est_[interpolated_.empty() ? pairs_[i].est : interpolated_[i].est];
-}
-
-Timestamp PoseMatches::time(std::size_t i) const {
-  const Timestamp t = est_pose(i).t;
-  return offset_s_ == 0.0 ? t : after(t, offset_s_);
-}
-
-MatchedPose PoseMatches::operator[](std::size_t i) const {
-  const Pose& est = est_pose(i).T_w_f;
-  return {time(i), gt_pose(i), is_aligned_ ? S_w_v_ * est : est};
 }
 
 std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,

@@ -42,8 +42,14 @@ class PoseMatches {
   PoseMatches(const Trajectory& gt, const Trajectory& est, std::vector<InterpolatedPair> pairs);
 
   [[nodiscard]] std::size_t size() const { return pairs_.empty() ? interpolated_.size() : pairs_.size(); }
-  [[nodiscard]] MatchedPose operator[](std::size_t i) const;
-  [[nodiscard]] Timestamp time(std::size_t i) const;
+  [[nodiscard]] MatchedPose operator[](std::size_t i) const {
+    const Pose& est = est_pose(i).T_w_f;
+    return {time(i), gt_pose(i), is_aligned_ ? S_w_v_ * est : est};
+  }
+  [[nodiscard]] Timestamp time(std::size_t i) const {
+    const Timestamp t = est_pose(i).t;
+    return offset_s_ == 0.0 ? t : after(t, offset_s_);
+  }
 
   /// From now on, the estimated poses are those in the world of the ground truth.
   void align(const Similarity& S_w_v) {
@@ -55,8 +61,18 @@ class PoseMatches {
   void shift(double offset_s) { offset_s_ = offset_s; }
 
  private:
-  [[nodiscard]] Pose gt_pose(std::size_t i) const;
-  [[nodiscard]] const StampedPose& est_pose(std::size_t i) const;
+  [[nodiscard]] static bool is_between(const InterpolatedPair& pair) { return pair.fraction > 0.0; }
+
+  [[nodiscard]] Pose gt_pose(std::size_t i) const {
+    if (interpolated_.empty()) return gt_[pairs_[i].gt].T_w_f;
+    const InterpolatedPair& pair = interpolated_[i];
+    const Pose& from = gt_[pair.gt].T_w_f;
+    if (!is_between(pair)) return from;
+    return {q_gt_[i], (1.0 - pair.fraction) * from.p + pair.fraction * gt_[pair.gt + 1].T_w_f.p};
+  }
+  [[nodiscard]] const StampedPose& est_pose(std::size_t i) const {
+    return est_[interpolated_.empty() ? pairs_[i].est : interpolated_[i].est];
+  }
 
   const std::vector<StampedPose>& gt_;
   const std::vector<StampedPose>& est_;

@@ -236,9 +236,9 @@ constexpr const char* kBoxNote =
     "Boxes: quartiles and median; whiskers: 5th and 95th percentile; dots: RMSE.";
 
 /// @param values not empty
-BoxValues box_values(std::vector<double> values) {
-  const double rmse = eval::reordering_statistics(values)->rmse;
-  const auto at = [&](double fraction) { return *eval::reordering_percentile(values, fraction); };
+BoxValues box_values(const std::vector<double>& values) {
+  const double rmse = eval::statistics(values)->rmse;
+  const auto at = [&](double fraction) { return *eval::percentile(values, fraction); };
   return {at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), rmse};
 }
 
