@@ -117,7 +117,22 @@ std::string format_message(const char* format, Values... values) {
 
 double span_s(const Trajectory& path) { return seconds_between(path.poses.front().t, path.poses.back().t); }
 
+/// Whether all stamps are whole seconds, and few: those of a program that counts milliseconds.
+bool has_sparse_whole_seconds(const Trajectory& path) {
+  constexpr double kMinInterval = 5.0;  // [s]
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  return span_s(path) >= kMinInterval * static_cast<double>(path.poses.size() - 1) &&
+         std::ranges::all_of(path.poses, [](const StampedPose& pose) { return pose.t.ns % kSecond == 0; });
+}
+
 std::optional<ConventionFinding> stamp_unit(const Trajectory& gt, const Trajectory& est) {
+  if (has_sparse_whole_seconds(gt) && has_sparse_whole_seconds(est)) {
+    return ConventionFinding{Convention::kStampUnit,
+                             format_message("both files have whole seconds as stamps, one pose per %.3g s: "
+                                            "if these are milliseconds, convert "
+                                            "them, since validity and intervals of poses are in seconds",
+                                            span_s(est) / static_cast<double>(est.poses.size() - 1))};
+  }
   struct Unit {
     double ratio;
     const char* name;

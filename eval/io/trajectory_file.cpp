@@ -347,6 +347,16 @@ LoadedTrajectory one_sequence(OpenlorisFile file, const TrajectorySource& source
 
 }  // namespace
 
+namespace {
+
+/// "key: value", in contrast to a row that begins with a date or a time of day.
+bool is_key_line(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return line.find(':') != std::string_view::npos && line.find_first_of("0123456789") != first;
+}
+
+}  // namespace
+
 TrajectoryFormat detect_format(std::string_view text, const std::string& name) {
   if (is_nmea(text)) return TrajectoryFormat::kNmea;
   const TableHeader header = find_header(text);
@@ -356,7 +366,7 @@ TrajectoryFormat detect_format(std::string_view text, const std::string& name) {
   RowReader rows(text, "");
   while (const std::optional<TextRow> row = rows.next()) {
     if (!header.is_comment && row->line == header.line) continue;
-    if (row->content.find(':') != std::string_view::npos) return TrajectoryFormat::kOpenloris;
+    if (is_key_line(row->content)) return TrajectoryFormat::kOpenloris;
     if (row->fields.size() > time && is_nanoseconds(row->fields[time])) return TrajectoryFormat::kEuroc;
     if (row->fields.size() == 12 && !has_names) return TrajectoryFormat::kKitti;
     return TrajectoryFormat::kTum;
@@ -366,6 +376,24 @@ TrajectoryFormat detect_format(std::string_view text, const std::string& name) {
 
 namespace {
 
+/// @throws InputError if poses are closer in time than systems report them: stamps in microseconds since 1970
+/// have 16 digits, too
+void require_plausible_nanoseconds(const LoadedTrajectory& loaded, const std::string& name) {
+  constexpr double kMinInterval = 5e-4;  // [s]
+  const std::vector<StampedPose>& poses = loaded.trajectory.poses;
+  if (poses.size() < 2) return;
+  const double interval_s =
+      seconds_between(poses.front().t, poses.back().t) / static_cast<double>(poses.size() - 1);
+  if (interval_s >= kMinInterval) return;
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "as nanoseconds, the stamps are %.3g ms apart: they seem to be in microseconds; convert them to "
+      "seconds or nanoseconds",
+      1e3 * interval_s);
+  throw InputError(name, text);
+}
+
 /// Rows with stamps in nanoseconds that were recognized by these. Without names of the columns, the separator
 /// tells which program wrote them.
 LoadedTrajectory parse_detected_nanoseconds(TextBlocks& file, const std::string& name) {
@@ -374,6 +402,7 @@ LoadedTrajectory parse_detected_nanoseconds(TextBlocks& file, const std::string&
   const bool has_commas = first && first->content.find(',') != std::string_view::npos;
   FaultLog strict;
   LoadedTrajectory loaded = parse_file(file, name, {has_commas ? kEuroc : kOrbSlam3}, strict);
+  require_plausible_nanoseconds(loaded, name);
   if (loaded.order_source == OrderSource::kFormat) loaded.order_source = OrderSource::kAssumed;
   return loaded;
 }

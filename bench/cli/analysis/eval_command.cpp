@@ -60,13 +60,27 @@ std::optional<eval::CovarianceScore> covariance_score_of(const EvalArguments& ar
   return score;
 }
 
+/// Mean interval of the poses [s].
+double interval_of(const Trajectory& path) {
+  return seconds_between(path.poses.front().t, path.poses.back().t) /
+         static_cast<double>(std::max<std::size_t>(path.poses.size(), 2) - 1);
+}
+
 /// @throws InputError if no protocol found two poses to compare
 void require_matches(const Trajectory& gt, const report::EvaluatedRun& run) {
   for (const eval::Evaluation& evaluation : run.evaluations) {
     if (evaluation.pairs > 1) return;
   }
-  const double interval_s = seconds_between(gt.poses.front().t, gt.poses.back().t) /
-                            static_cast<double>(std::max<std::size_t>(gt.poses.size(), 2) - 1);
+  constexpr double kSlow = 5.0;  // [s]
+  const double interval_s = interval_of(gt);
+  if (std::min(interval_s, interval_of(run.est)) >= kSlow) {
+    throw InputError(
+        run.name,
+        fmt::format("fewer than two of {} poses have a ground-truth pose close enough in time ({}); "
+                    "the ground truth has one pose per {:.3g} s: if the stamps are in milliseconds or "
+                    "finer, convert them to seconds",
+                    run.est.poses.size(), run.evaluations.front().protocol, interval_s));
+  }
   throw InputError(
       run.name,
       fmt::format(

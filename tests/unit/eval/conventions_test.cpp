@@ -34,6 +34,14 @@ TEST(Conventions, AcceptAnEstimateInAnotherWorldFrame) {
   EXPECT_TRUE(violations(kGt, est).empty());
 }
 
+TEST(Conventions, DetectMillisecondsInBothFiles) {
+  Trajectory gt = kGt;
+  for (StampedPose& pose : gt.poses) pose.t.ns *= 1000;  // one pose per 10 ms, read as 10 s
+  EXPECT_EQ(violations(gt, gt), std::vector{Convention::kStampUnit});
+  for (StampedPose& pose : gt.poses) pose.t.ns += 500'000'000;  // no whole seconds
+  EXPECT_TRUE(violations(gt, gt).empty());
+}
+
 TEST(Conventions, DetectASwappedQuaternionOrder) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) {
