@@ -57,6 +57,14 @@ void wait_for_interrupt() {
   sigwait(&signals, &signal);
 }
 
+bool interrupted_within(std::chrono::milliseconds time) {
+  const sigset_t signals = interrupt_signals();
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
+  const timespec limit{.tv_sec = seconds.count(),
+                       .tv_nsec = std::chrono::nanoseconds(time - seconds).count()};
+  return sigtimedwait(&signals, nullptr, &limit) > 0;
+}
+
 ProgressLine::ProgressLine(std::string label, std::size_t total, std::string unit)
     : label_(std::move(label)),
       total_(total),

@@ -27,6 +27,9 @@ void block_interrupts();
 /// Waits for SIGINT or SIGTERM, which must be blocked (`block_interrupts`).
 void wait_for_interrupt();
 
+/// The same, for at most `time`. @return whether there was a signal
+[[nodiscard]] bool interrupted_within(std::chrono::milliseconds time);
+
 /// Progress line on stderr with rate and estimated remaining time. If stderr is not a terminal, a new line
 /// every 10 s.
 class ProgressLine {

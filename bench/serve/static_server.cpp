@@ -34,7 +34,8 @@ namespace {
 
 constexpr std::size_t kConnectionBytes = std::size_t{32} * 1024;
 constexpr unsigned kConnections = 32;
-constexpr unsigned kAccepted = 2 * kConnections;  // includes those that were shut down and not yet closed
+// Includes those that were shut down and not yet closed.
+constexpr unsigned kAccepted = 2 * kConnections + unsigned{EventStreams::kMaxStreams};
 constexpr unsigned kTimeoutS = 5;
 constexpr int kLargestPort = 65535;
 constexpr std::size_t kPortDigits = 5;
@@ -71,6 +72,20 @@ int socket_of(MHD_Connection* connection) {
   return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
 }
 
+/// Why a request is not answered by a file.
+const char* error_text(unsigned status) {
+  switch (status) {
+    case MHD_HTTP_BAD_REQUEST:
+      return "the path contains control characters\n";
+    case MHD_HTTP_METHOD_NOT_ALLOWED:
+      return "only GET and HEAD are supported\n";
+    case MHD_HTTP_FORBIDDEN:
+      return "the Host header does not match this server\n";
+    default:
+      return "page not found\n";
+  }
+}
+
 /// Callback of libmicrohttpd for connections that begin or end.
 void on_connection(void* connections, MHD_Connection* connection, void** /*context*/,
                    MHD_ConnectionNotificationCode code) {
@@ -87,29 +102,16 @@ std::string host_of(MHD_Connection* connection) {
   return host == nullptr ? "" : host;
 }
 
-/// Callback of libmicrohttpd for each request. Called first with the headers only: the response queued then
-/// completes the request, so no body is read.
-// NOLINTNEXTLINE(readability-function-size): libmicrohttpd prescribes the parameters
-MHD_Result on_request(void* server, MHD_Connection* connection, const char* path, const char* method,
-                      const char* /*version*/, const char* /*upload*/, std::size_t* /*upload_bytes*/,
-                      void** /*request*/) {
-  const StaticServer::Response reply =
-      static_cast<const StaticServer*>(server)->respond(method, path, host_of(connection));
-  // libmicrohttpd takes a non-const pointer, but does not write to a persistent buffer.
-  MHD_Response* response = MHD_create_response_from_buffer(
-      reply.text->size(), const_cast<char*>(reply.text->data()), MHD_RESPMEM_PERSISTENT);
-  if (response == nullptr) return MHD_NO;
-  const auto header = [&](const char* name, const char* value) {
-    MHD_add_response_header(response, name, value);
-  };
-  header(MHD_HTTP_HEADER_CONTENT_TYPE, reply.type.c_str());
-  header("X-Content-Type-Options", "nosniff");
-  header("Content-Security-Policy", "frame-ancestors 'none'");
-  header(MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
-  if (reply.status == MHD_HTTP_METHOD_NOT_ALLOWED) header(MHD_HTTP_HEADER_ALLOW, "GET, HEAD");
-  const MHD_Result result = MHD_queue_response(connection, reply.status, response);
-  MHD_destroy_response(response);
-  return result;
+/// A response that keeps its text as long as it is used; null without memory.
+MHD_Response* response_of(std::shared_ptr<const std::string> text) {
+  auto owner = std::make_unique<std::shared_ptr<const std::string>>(std::move(text));
+  const std::string& bytes = **owner;
+  const auto release = [](void* held) { delete static_cast<std::shared_ptr<const std::string>*>(held); };
+  // libmicrohttpd takes a non-const pointer, but does not write to the buffer.
+  MHD_Response* response = MHD_create_response_from_buffer_with_free_callback_cls(
+      bytes.size(), const_cast<char*>(bytes.data()), release, owner.get());
+  if (response != nullptr) static_cast<void>(owner.release());
+  return response;
 }
 
 sockaddr_in address_of(const ServerOptions& options) {
@@ -134,21 +136,43 @@ std::string listen_error(const sockaddr_in& address) {
 
 }  // namespace
 
+struct StaticServer::Requests {
+  /// Callback of libmicrohttpd for each request. Called first with the headers only: the response queued then
+  /// completes the request, so no body is read.
+  // NOLINTNEXTLINE(readability-function-size): libmicrohttpd prescribes the parameters
+  static MHD_Result answer(void* server, MHD_Connection* connection, const char* path, const char* method,
+                           const char* /*version*/, const char* /*upload*/, std::size_t* /*upload_bytes*/,
+                           void** /*request*/) {
+    auto& self = *static_cast<StaticServer*>(server);
+    const Response reply = self.respond(method, path, host_of(connection));
+    const bool is_stream = reply.text == nullptr;
+    MHD_Response* response = is_stream ? self.events_.open(connection) : response_of(reply.text);
+    if (response == nullptr) return MHD_NO;
+    if (is_stream) self.connections_.closed(socket_of(connection));  // has a limit of its own
+    const auto header = [&](const char* name, const char* value) {
+      MHD_add_response_header(response, name, value);
+    };
+    header(MHD_HTTP_HEADER_CONTENT_TYPE, reply.type.c_str());
+    header("X-Content-Type-Options", "nosniff");
+    header("Content-Security-Policy", "frame-ancestors 'none'");
+    header(MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
+    if (reply.status == MHD_HTTP_METHOD_NOT_ALLOWED) header(MHD_HTTP_HEADER_ALLOW, "GET, HEAD");
+    const MHD_Result result = MHD_queue_response(connection, reply.status, response);
+    MHD_destroy_response(response);
+    return result;
+  }
+};
+
 StaticServer::StaticServer(const std::vector<OutputFile>& files, const ServerOptions& options)
-    : error_texts_({{MHD_HTTP_BAD_REQUEST, "the path contains control characters\n"},
-                    {MHD_HTTP_METHOD_NOT_ALLOWED, "only GET and HEAD are supported\n"},
-                    {MHD_HTTP_FORBIDDEN, "the Host header does not match this server\n"},
-                    {MHD_HTTP_NOT_FOUND, "page not found\n"}}),
-      address_(options.address),
-      connections_(kConnections),
-      daemon_(nullptr, MHD_stop_daemon) {
-  for (const OutputFile& file : files) texts_["/" + file.name] = file.text;
+    : address_(options.address), connections_(kConnections), daemon_(nullptr, MHD_stop_daemon) {
+  replace(files);
   const sockaddr_in address = address_of(options);
   daemon_.reset(MHD_start_daemon(
-      MHD_USE_AUTO_INTERNAL_THREAD, 0, nullptr, nullptr, on_request, this, MHD_OPTION_SOCK_ADDR, &address,
-      MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes, MHD_OPTION_CONNECTION_LIMIT, kAccepted,
-      MHD_OPTION_NOTIFY_CONNECTION, on_connection, &connections_, MHD_OPTION_UNESCAPE_CALLBACK, unescape,
-      nullptr, MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END));
+      MHD_USE_AUTO_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr, nullptr, Requests::answer, this,
+      MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes,
+      MHD_OPTION_CONNECTION_LIMIT, kAccepted, MHD_OPTION_NOTIFY_CONNECTION, on_connection, &connections_,
+      MHD_OPTION_UNESCAPE_CALLBACK, unescape, nullptr, MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS,
+      MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END));
   if (daemon_ == nullptr) {
     throw InputError("--port", "cannot listen on " + options.address + ":" + std::to_string(options.port) +
                                    ": " + listen_error(address) +
@@ -156,14 +180,25 @@ StaticServer::StaticServer(const std::vector<OutputFile>& files, const ServerOpt
   }
 }
 
+StaticServer::~StaticServer() { events_.end_all(); }
+
 std::uint16_t StaticServer::port() const {
   return MHD_get_daemon_info(daemon_.get(), MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
+void StaticServer::replace(const std::vector<OutputFile>& files) {
+  Texts texts;
+  for (const OutputFile& file : files)
+    texts["/" + file.name] = std::make_shared<const std::string>(file.text);
+  const std::scoped_lock lock(mutex_);
+  texts_.swap(texts);
+}
+
 StaticServer::Response StaticServer::respond(const std::string& method, const std::string& path,
                                              const std::string& host) const {
-  const auto error = [&](unsigned status) {
-    return Response{status, &error_texts_.at(status), "text/plain; charset=utf-8"};
+  const auto error = [](unsigned status) {
+    return Response{status, std::make_shared<const std::string>(error_text(status)),
+                    "text/plain; charset=utf-8"};
   };
   if (method != MHD_HTTP_METHOD_GET && method != MHD_HTTP_METHOD_HEAD)
     return error(MHD_HTTP_METHOD_NOT_ALLOWED);
@@ -171,9 +206,11 @@ StaticServer::Response StaticServer::respond(const std::string& method, const st
   const bool is_loopback = address_.starts_with("127.");
   if (is_loopback && name != "localhost" && name != address_) return error(MHD_HTTP_FORBIDDEN);
   if (std::ranges::any_of(path, is_control)) return error(MHD_HTTP_BAD_REQUEST);
+  if (path == kEvents && events_.has_message()) return {MHD_HTTP_OK, nullptr, "text/event-stream"};
+  const std::scoped_lock lock(mutex_);
   const auto found = texts_.find(path.ends_with('/') ? path + "index.html" : path);
   if (found == texts_.end()) return error(MHD_HTTP_NOT_FOUND);
-  return {MHD_HTTP_OK, &found->second, content_type(found->first)};
+  return {MHD_HTTP_OK, found->second, content_type(found->first)};
 }
 
 }  // namespace stillpoint::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// HTTP server of files that it holds in memory; requests never access the file system. Old connections are
-/// closed in favor of new ones.
+/// HTTP server of in-memory files and of a stream of events; requests never access the file
+/// system. Old connections are closed in favor of new ones.
 #pragma once
 
 #include <chrono>
@@ -8,10 +8,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "bench/record/output_folder.h"
+#include "bench/serve/event_streams.h"
 
 struct MHD_Daemon;
 
@@ -45,22 +47,34 @@ struct ServerOptions {
 /// Serves GET and HEAD requests in one background thread until it is destroyed. At most 32 connections with
 /// 32 kB of memory each; larger requests are rejected. A connection serves one request; idle ones are closed
 /// after 5 s, and the oldest one when there are too many. On a loopback address the Host header must name
-/// this machine, which protects against DNS rebinding by other sites.
+/// this machine, which protects against DNS rebinding by other sites. Streams of events stay open; there are
+/// at most `EventStreams::kMaxStreams`, and they do not count as connections.
 class StaticServer {
  public:
+  /// Path of the stream of events; it exists from the first `publish` on.
+  static constexpr const char* kEvents = "/events";
+
   /// @param files names are request paths; "index.html" is served for its folder
   /// @throws InputError if the address is invalid or already in use
   StaticServer(const std::vector<OutputFile>& files, const ServerOptions& options);
 
+  ~StaticServer();
   StaticServer(const StaticServer&) = delete;  // the server thread holds a pointer to it
   StaticServer& operator=(const StaticServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
 
+  /// Replaces all files; responses that are being sent are completed with the old ones. Thread-safe.
+  void replace(const std::vector<OutputFile>& files);
+
+  /// Sends a message, one line, to all streams of events; those that are opened later begin with it.
+  /// Thread-safe.
+  void publish(const std::string& message) { events_.publish(message); }
+
   struct Response {
     unsigned status = 200;
-    const std::string* text = nullptr;  ///< valid during the lifetime of the server
-    std::string type;                   ///< MIME type
+    std::shared_ptr<const std::string> text;  ///< null: the stream of events
+    std::string type;                         ///< MIME type
   };
   /// @param path of the request, without percent encoding
   /// @param host Host header of the request, empty if absent
@@ -68,10 +82,15 @@ class StaticServer {
                                  const std::string& host) const;
 
  private:
-  std::map<std::string, std::string> texts_;     ///< by path, e.g. "/index.html"
-  std::map<unsigned, std::string> error_texts_;  ///< by HTTP status
+  using Texts = std::map<std::string, std::shared_ptr<const std::string>>;
+
+  struct Requests;  ///< callbacks of the server thread
+
+  mutable std::mutex mutex_;  ///< guards `texts_`
+  Texts texts_;               ///< by path, e.g. "/index.html"
   std::string address_;
   ConnectionLimit connections_;  ///< used by the server thread
+  EventStreams events_;
   std::unique_ptr<MHD_Daemon, void (*)(MHD_Daemon*)> daemon_;
 };
 

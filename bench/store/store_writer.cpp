@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
+#include <optional>
 
 #include "bench/store/schema.h"
 #include "core/base/error.h"
@@ -25,11 +27,33 @@ namespace fs = std::filesystem;
                                       "; the folder of the store must be writable and on a local disk");
 }
 
-/// Unique over time, too: process ids are reused.
+using std::chrono::nanoseconds;
+using std::chrono::system_clock;
+
+constexpr const char* kWorkersFolder = "workers";
+
+/// Unique over time, too: process ids are reused. The second part is the time since the epoch [ns].
 std::string new_name() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto now = system_clock::now().time_since_epoch();
   return std::to_string(getpid()) + "-" +
-         std::to_string(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
+         std::to_string(std::chrono::duration_cast<nanoseconds>(now).count());
+}
+
+/// The time in a name; nullopt if it has none.
+std::optional<system_clock::time_point> time_of(const std::string& name) {
+  const std::size_t begin = name.find('-') + 1;
+  std::int64_t ns = 0;
+  const auto [end, error] = std::from_chars(name.data() + begin, name.data() + name.size(), ns);
+  if (begin == 0 || error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return system_clock::time_point(std::chrono::duration_cast<system_clock::duration>(nanoseconds(ns)));
+}
+
+bool is_locked(const fs::path& lock_file) {
+  const int file = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool locked = flock(file, LOCK_SH | LOCK_NB) != 0;  // shared: other processes may test it, too
+  close(file);
+  return locked;
 }
 
 constexpr const char* kInsertRun =
@@ -76,12 +100,7 @@ WorkerLock::~WorkerLock() {
 }
 
 bool WorkerLock::is_alive(const std::string& name) const {
-  if (name == name_) return true;
-  const int file = open((workers_ / (name + ".lock")).c_str(), O_RDWR | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool locked = flock(file, LOCK_SH | LOCK_NB) != 0;  // shared: other workers may test it, too
-  close(file);
-  return locked;
+  return name == name_ || is_locked(workers_ / (name + ".lock"));
 }
 
 void WorkerLock::remove_stale() const {
@@ -98,10 +117,23 @@ void WorkerLock::remove_stale() const {
   }
 }
 
+std::vector<LiveWorker> live_workers(const fs::path& store_file) {
+  std::vector<LiveWorker> workers;
+  std::error_code error;  // no folder: there was never a worker
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(files_folder(store_file) / kWorkersFolder, error)) {
+    const std::string name = entry.path().stem().string();
+    const auto since = time_of(name);
+    if (entry.path().extension() == ".lock" && since && is_locked(entry.path()))
+      workers.push_back({name, *since});
+  }
+  return workers;
+}
+
 StoreWriter::StoreWriter(const fs::path& file)
     : database_(open_for_writing(file)),
       blobs_(files_folder(file) / "blobs"),
-      worker_(files_folder(file) / "workers") {
+      worker_(files_folder(file) / kWorkersFolder) {
   worker_.remove_stale();
 }
 

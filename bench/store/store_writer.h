@@ -3,6 +3,7 @@
 /// executing.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -40,6 +41,15 @@ class WorkerLock {
   std::string name_;
   int lock_ = -1;
 };
+
+/// A registered worker process that is alive.
+struct LiveWorker {
+  std::string name;
+  std::chrono::system_clock::time_point since;  ///< when it was registered
+};
+
+/// The live workers of a store on this machine; may be called by a process that is none.
+[[nodiscard]] std::vector<LiveWorker> live_workers(const std::filesystem::path& store_file);
 
 /// Answer to a worker that wants to execute a run.
 enum class RunLease {

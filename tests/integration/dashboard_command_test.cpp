@@ -75,5 +75,15 @@ TEST(ServeCommand, ListensOnLoopbackUntilItIsInterrupted) {
   EXPECT_EQ(result.exit_code, 0);
 }
 
+TEST(ServeCommand, WatchesAStoreWithoutRuns) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "s.sqlite").string();
+  { const bench::StoreWriter empty(file); }
+  EXPECT_EQ(run_program({"serve", file, "--port", "0"}).exit_code, 2);  // there is nothing to show
+  const ProgramResult result = run_program({"serve", file, "--port", "0", "--watch"},
+                                           {.interrupt_after = "serving http://127.0.0.1:"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -13,9 +14,11 @@
 #include "bench/record/output_folder.h"
 #include "bench/serve/static_server.h"
 #include "bench/store/store.h"
+#include "bench/store/store_progress.h"
 #include "core/base/error.h"
 #include "reports/dashboard/dashboard.h"
 #include "reports/dashboard/history_text.h"
+#include "reports/live/live_page.h"
 #include "reports/page/report_page.h"
 
 namespace stillpoint::bench {
@@ -150,19 +153,99 @@ namespace {
 struct ServeArguments {
   std::string store;
   std::string system;
+  bool watch = false;
   ServerOptions server;
 };
 
-int serve(const ServeArguments& arguments) {
-  block_interrupts();
-  const StaticServer server(report::dashboard_files(Store(arguments.store), arguments.system),
-                            arguments.server);
-  spdlog::info("serving http://{}:{}/ (current content of the store); press Ctrl-C to stop",
-               arguments.server.address, server.port());
+std::vector<OutputFile> in_folder(const std::string& folder, std::vector<OutputFile> files) {
+  for (OutputFile& file : files) file.name = folder + file.name;
+  return files;
+}
+
+/// Files of the dashboard below `folder`, and of the report below "report/".
+std::vector<OutputFile> served_files(const Store& store, const std::string& system,
+                                     const std::string& folder) {
+  std::vector<OutputFile> files = in_folder(folder, report::dashboard_files(store, system));
+  files.push_back({"report/index.html", report::report_html(store, report::report_subject(store, ""))});
+  return files;
+}
+
+/// The pages of a store that changes, and the messages that say how.
+class WatchedPages {
+ public:
+  explicit WatchedPages(const ServeArguments& arguments)
+      : system_(arguments.system),
+        index_{"index.html",
+               report::live_html(fs::path(arguments.store).filename().string(), StaticServer::kEvents)},
+        reader_(arguments.store),
+        server_({index_}, arguments.server) {}
+
+  [[nodiscard]] const StaticServer& server() const { return server_; }
+
+  /// Publishes the state of the store, and renders its pages: in at most a tenth of the time while there are
+  /// workers.
+  void update() {
+    const bool changed = reader_.has_changed();
+    is_outdated_ = is_outdated_ || changed;
+    if (!changed && !is_outdated_ && !has_workers_) return;
+    const StoreProgress progress = reader_.read(std::chrono::system_clock::now(), kNewestRuns);
+    has_workers_ = progress.workers > 0;
+    if (is_outdated_ && (!has_workers_ || Clock::now() >= next_rendering_)) render(progress);
+    server_.publish(report::progress_json(progress, rendered_));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static constexpr std::size_t kNewestRuns = 50;
+  static constexpr int kPauses = 9;  // duration of the pause after a rendering, in renderings
+
+  void render(const StoreProgress& progress) {
+    is_outdated_ = false;
+    if (progress.ended == 0) return;
+    const Clock::time_point start = Clock::now();
+    try {
+      std::vector<OutputFile> files = served_files(reader_.store(), system_, "dashboard/");
+      files.push_back(index_);
+      server_.replace(files);
+      rendered_ = static_cast<std::size_t>(progress.ended);
+    } catch (const InputError& error) {
+      spdlog::warn("{}; report and dashboard are not up to date", error.what());
+    }
+    next_rendering_ = Clock::now() + kPauses * (Clock::now() - start);
+  }
+
+  std::string system_;
+  OutputFile index_;
+  ProgressReader reader_;
+  StaticServer server_;
+  std::size_t rendered_ = 0;  ///< runs of the pages
+  bool is_outdated_ = false;  ///< the store was written after the last rendering
+  bool has_workers_ = false;
+  Clock::time_point next_rendering_{};
+};
+
+void log_address(const StaticServer& server, const ServeArguments& arguments, const std::string& content) {
+  spdlog::info("serving http://{}:{}/ ({}); press Ctrl-C to stop", arguments.server.address, server.port(),
+               content);
   if (!arguments.server.address.starts_with("127."))
-    spdlog::warn("{} is not a loopback address: the dashboard is accessible from other machines",
+    spdlog::warn("{} is not a loopback address: the pages are accessible from other machines",
                  arguments.server.address);
-  wait_for_interrupt();
+}
+
+int serve(const ServeArguments& arguments) {
+  constexpr std::chrono::milliseconds kInterval{500};
+  block_interrupts();
+  if (!arguments.watch) {
+    const StaticServer server(served_files(Store(arguments.store), arguments.system, ""), arguments.server);
+    log_address(server, arguments, "current content of the store; the report is at /report/");
+    wait_for_interrupt();
+    return kExitOk;
+  }
+  WatchedPages pages(arguments);
+  log_address(pages.server(), arguments, "runs as they end");
+  do pages.update();
+  while (!interrupted_within(kInterval));
   return kExitOk;
 }
 
@@ -170,18 +253,23 @@ int serve(const ServeArguments& arguments) {
 
 Command serve_command() {
   const auto arguments = std::make_shared<ServeArguments>();
-  return {.name = "serve",
-          .summary = "Serve the dashboard of a store over HTTP",
-          .example = "serve build/bench/store.sqlite --port 8035",
-          .options =
-              {{"STORE", "Store with the runs of several commits", &arguments->store},
-               {"--system", kSystemHelp, &arguments->system},
-               {"--port", "Port to listen on; 0 = any free port [8035]", &arguments->server.port, {0, 65535}},
-               {"--address",
-                "IPv4 address to listen on; addresses other than loopback give other machines access "
-                "[127.0.0.1]",
-                &arguments->server.address}},
-          .action = [arguments] { return serve(*arguments); }};
+  return {
+      .name = "serve",
+      .summary = "Serve dashboard and report of a store over HTTP, with --watch while a bench writes it",
+      .example = "serve build/bench/store.sqlite --watch --port 8035",
+      .options =
+          {{"STORE", "Store with the runs of several commits", &arguments->store},
+           {"--system", kSystemHelp, &arguments->system},
+           {"--watch",
+            "First page: runs as they end, with progress, rate and remaining time; dashboard/ and report/ "
+            "are rendered again",
+            &arguments->watch},
+           {"--port", "Port to listen on; 0 = any free port [8035]", &arguments->server.port, {0, 65535}},
+           {"--address",
+            "IPv4 address to listen on; addresses other than loopback give other machines access "
+            "[127.0.0.1]",
+            &arguments->server.address}},
+      .action = [arguments] { return serve(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

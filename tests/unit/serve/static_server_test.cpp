@@ -50,6 +50,14 @@ class Client {
     }
   }
 
+  /// Receives until the text contains `end`, or the server closes the connection.
+  std::string received_until(const std::string& end) const {
+    std::string text;
+    char byte = 0;
+    while (!text.ends_with(end) && recv(socket_, &byte, 1, 0) > 0) text += byte;
+    return text;
+  }
+
   /// Receives until the server closes the connection; empty if the connection was reset.
   [[nodiscard]] std::string received() const {
     std::string text;
@@ -184,6 +192,66 @@ TEST(StaticServer, ClosesTheOldestConnectionForANewOne) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));  // before its timeout
   idle[1]->send_text(request_of("GET", "/r.json"));
   EXPECT_EQ(status_of(idle[1]->received()), "200");
+}
+
+TEST(StaticServer, ReplacesItsFiles) {
+  StaticServer server = make_server();
+  server.replace({{"new.html", "<p>new</p>"}});
+  EXPECT_TRUE(reply_of(server, request_of("GET", "/new.html")).ends_with("<p>new</p>"));
+  EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/r.json"))), "404");
+}
+
+TEST(StaticServer, SendsEachMessageToAllStreamsAndTheNewestToNewOnes) {
+  StaticServer server = make_server();
+  EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/events"))), "404");  // before the first message
+  server.publish("{\"runs\":1}");
+  const Client first(server.port());
+  first.send_text(request_of("GET", "/events"));
+  EXPECT_NE(first.received_until("\n\r\n").find("text/event-stream"), std::string::npos);
+  EXPECT_TRUE(first.received_until("\n\n").ends_with("data: {\"runs\":1}\n\n"));
+  server.publish("{\"runs\":2}");
+  EXPECT_TRUE(first.received_until("\n\n").ends_with("data: {\"runs\":2}\n\n"));
+  const Client second(server.port());
+  second.send_text(request_of("GET", "/events"));
+  second.received_until("\n\r\n");
+  EXPECT_TRUE(second.received_until("\n\n").ends_with("data: {\"runs\":2}\n\n"));
+  EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/events", "evil.example"))), "403");
+}
+
+TEST(StaticServer, StreamsOutliveManyConnections) {
+  StaticServer server = make_server();
+  server.publish("1");
+  const Client stream(server.port());
+  stream.send_text(request_of("GET", "/events"));
+  stream.received_until("data: 1\n\n");
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/"))), "200");
+  server.publish("2");
+  EXPECT_TRUE(stream.received_until("data: 2\n\n").ends_with("data: 2\n\n"));
+}
+
+TEST(StaticServer, EndsTheOldestStreamForANewOne) {
+  StaticServer server = make_server();
+  server.publish("1");
+  std::vector<std::unique_ptr<Client>> streams;
+  for (std::size_t i = 0; i <= EventStreams::kMaxStreams; ++i) {
+    streams.push_back(std::make_unique<Client>(server.port()));
+    streams.back()->send_text(request_of("GET", "/events"));
+    EXPECT_TRUE(streams.back()->received_until("data: 1\n\n").ends_with("data: 1\n\n")) << i;
+  }
+  EXPECT_TRUE(streams.front()->received().ends_with("0\r\n\r\n"));  // the last chunk
+  server.publish("2");
+  EXPECT_TRUE(streams[1]->received_until("data: 2\n\n").ends_with("data: 2\n\n"));
+}
+
+TEST(StaticServer, EndsWhileStreamsAreOpen) {
+  auto server = std::make_unique<StaticServer>(kFiles, ServerOptions{.port = 0});
+  server->publish("1");
+  const Client stream(server->port());
+  stream.send_text(request_of("GET", "/events"));
+  stream.received_until("data: 1\n\n");
+  const auto start = std::chrono::steady_clock::now();
+  server.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
 }
 
 TEST(StaticServer, RejectsInvalidAddressesAndPortsInUse) {
