@@ -109,6 +109,7 @@ constexpr std::size_t kMaxTruthPoints = 2000;  // more than a plot can resolve
 // A page of 15 runs of a minute has less than 3 MB: scripts and licenses .3, images 1.2, series .8.
 constexpr std::size_t kImageBudgetBytes = 1'200'000;
 constexpr std::size_t kSeriesBudgetBytes = 800'000;
+constexpr std::size_t kSideImageBytes = 100'000'000;  // of all side files; a server holds them in memory
 constexpr std::size_t kMinFrames = 300;       // of a run, whatever the number of runs: a chart stays readable
 constexpr double kBytesPerValue = 8.0 / 3.0;  // 16 bits in base64
 constexpr const char* kModulePrefix = "ms:";
@@ -295,7 +296,8 @@ Json tooltips_json(std::span<const bench::StoredRun> runs) {
 
 }  // namespace
 
-PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> runs) {
+PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> runs, RunData place) {
+  const bool embeds = place == RunData::kEmbedded;
   PageData data;
   Json index = {{"runs", Json::array()}, {"truths", Json::object()}, {"manifests", Json::object()}};
   ModuleTimes times;
@@ -303,7 +305,8 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
   std::vector<RunSeries> all;
   for (const bench::StoredRun& run : runs) {
     const RunSeries series = run_series(store, run);
-    const RunSeries& shown = all.emplace_back(thinned(series, frames_per_run(series, runs.size())));
+    const std::size_t max_frames = embeds ? frames_per_run(series, runs.size()) : series.t_s.size();
+    const RunSeries& shown = all.emplace_back(thinned(series, max_frames));
     Json& entry = index["runs"].emplace_back(run_json(run));
     entry["frames"] = series.t_s.size();
     entry["images"] = series.images.size();
@@ -316,7 +319,10 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
                                                            series.t_s.size());
       }
     }
-    if (entry["truth"].is_string() && !index["truths"].contains(entry["truth"].get<std::string>())) {
+    const bool has_truth = entry["truth"].is_string();
+    if (!embeds) {
+      data.truths.push_back(has_truth ? truth_json(store.truth(run)).dump() : "null");
+    } else if (has_truth && !index["truths"].contains(entry["truth"].get<std::string>())) {
       index["truths"][entry["truth"].get<std::string>()] = truth_json(store.truth(run));
     }
     if (!run.manifest_hash.empty() && !index["manifests"].contains(run.manifest_hash)) {
@@ -329,7 +335,7 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
   index["segments"] = segments_json(segment_figures(store, runs));
   data.index = dump_replacing_invalid_utf8(index);
   data.module_boxes = boxes_of(times);
-  data.images = page_images(store, runs, all, kImageBudgetBytes);
+  data.images = page_images(store, runs, all, embeds ? kImageBudgetBytes : kSideImageBytes);
   return data;
 }
 

@@ -37,10 +37,18 @@ struct PageData {
   std::string index;  ///< JSON: runs; truths and manifests by hash; flames; segments; tooltips of metrics
   std::vector<std::string> series;    ///< JSON of each run, in the order of the index
   std::vector<std::string> images;    ///< JSON of each run: annotated images by frame index
+  std::vector<std::string> truths;    ///< JSON of each run: ground truth or null; empty if in the index
   std::vector<PlotBox> module_boxes;  ///< time per frame and module [ms], by variant
 };
 
+/// Where the data of the runs is.
+enum class RunData {
+  kEmbedded,   ///< in the page: thinned, and with the images of the worst frames, to limit its size
+  kSideFiles,  ///< in a file per run: all frames, and up to 100 MB of images
+};
+
 /// @throws InputError if files of a run are missing or damaged
-[[nodiscard]] PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> runs);
+[[nodiscard]] PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> runs,
+                                 RunData place);
 
 }  // namespace stillpoint::report

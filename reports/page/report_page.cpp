@@ -288,7 +288,11 @@ std::string data_html(const PageData& data, const ReportSubject& subject,
       files.push_back({{"name", file.name}, {"text", file.text}});
   }
   std::string text = data_script("index", data.index) + data_script("plans", plans_json(subject.plans));
-  text += data_script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
+  return text + data_script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
+}
+
+std::string embedded_runs_html(const PageData& data) {
+  std::string text;
   for (std::size_t i = 0; i < data.series.size(); ++i) {
     text += data_script(fmt::format("series-{}", i), data.series[i]);
     text += data_script(fmt::format("images-{}", i), data.images[i]);
@@ -302,10 +306,9 @@ std::string licenses_html() {
   return text;
 }
 
-}  // namespace
-
-std::string report_html(const bench::Store& store, const ReportSubject& subject) {
-  const PageData data = page_data(store, subject.runs);
+std::string page_html(const bench::Store& store, const ReportSubject& subject, const PageData& data,
+                      RunData place) {
+  const bool embeds = place == RunData::kEmbedded;
   const std::vector<ReportTable> tables = report_tables(subject);
   return filled_template(
       web_file("page.html"),
@@ -321,8 +324,27 @@ std::string report_html(const bench::Store& store, const ReportSubject& subject)
        {"boxes", box_plot_svg(data.module_boxes, "Time per frame and module", "ms")},
        {"plans", plans_html(store, subject)},
        {"licenses", licenses_html()},
-       {"data", data_html(data, subject, tables)},
+       {"connections", embeds ? "" : "; connect-src 'self'"},
+       {"data", data_html(data, subject, tables) + (embeds ? embedded_runs_html(data) : "")},
        {"scripts", scripts_html(kScripts)}});
+}
+
+}  // namespace
+
+std::string report_html(const bench::Store& store, const ReportSubject& subject) {
+  return page_html(store, subject, page_data(store, subject.runs, RunData::kEmbedded), RunData::kEmbedded);
+}
+
+std::vector<bench::OutputFile> served_report(const bench::Store& store, const ReportSubject& subject) {
+  const PageData data = page_data(store, subject.runs, RunData::kSideFiles);
+  std::vector<bench::OutputFile> files = {
+      {"index.html", page_html(store, subject, data, RunData::kSideFiles)}};
+  for (std::size_t i = 0; i < subject.runs.size(); ++i) {
+    files.push_back({"runs/" + subject.runs[i].key + ".json",
+                     fmt::format(R"({{"series":{},"images":{},"truth":{}}})", data.series[i], data.images[i],
+                                 data.truths[i])});
+  }
+  return files;
 }
 
 }  // namespace stillpoint::report

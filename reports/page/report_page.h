@@ -25,7 +25,12 @@ namespace stillpoint::report {
 /// The variant with the smallest median ATE on most sequences; empty with fewer than two variants.
 [[nodiscard]] std::string best_sentence(std::span<const bench::StoredRun> runs);
 
-/// index.html.
+/// The page in one file.
 [[nodiscard]] std::string report_html(const bench::Store& store, const ReportSubject& subject);
+
+/// The page with the data of each run in a file of its own, which is loaded when the run is selected:
+/// index.html and runs/KEY.json. It must be served; a browser does not load files of a folder.
+[[nodiscard]] std::vector<bench::OutputFile> served_report(const bench::Store& store,
+                                                           const ReportSubject& subject);
 
 }  // namespace stillpoint::report

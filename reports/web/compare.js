@@ -227,11 +227,13 @@
 
   // Shows runs, by index; more than MAX_RUNS are not drawn.
   page.compareRuns = function (runs, source) {
-    const distinct = [...new Set(runs)];
-    state.runs = distinct.slice(0, MAX_RUNS);
-    byId("compare-source").textContent = (source || "") + (distinct.length > MAX_RUNS ? ` The first ${MAX_RUNS} of ${distinct.length} runs are shown.` : "");
-    page.setState({ compare: state.runs.map((_, i) => info(i).key).join(".") }, true);
-    draw();
+    const distinct = [...new Set(runs)], shown = distinct.slice(0, MAX_RUNS);
+    page.withRuns("compare", shown, () => {
+      state.runs = shown;
+      byId("compare-source").textContent = (source || "") + (distinct.length > MAX_RUNS ? ` The first ${MAX_RUNS} of ${distinct.length} runs are shown.` : "");
+      page.setState({ compare: state.runs.map((_, i) => info(i).key).join(".") }, true);
+      draw();
+    });
   };
   page.comparedRuns = () => state.runs;
   page.redrawCompare = draw;
@@ -245,9 +247,9 @@
     window.addEventListener("resize", () => { if (state.plot) state.plot.setSize({ width: byId("compare-error").clientWidth, height: 200 }); drawPath(); });
     page.onState(() => {
       const keys = (page.stateOf("compare") || "").split(".");
-      state.runs = keys.map((key) => page.index.runs.findIndex((run) => run.key === key)).filter((i) => i >= 0).slice(0, MAX_RUNS);
-      state.time = Number(page.stateOf("t")) || 0;
-      draw();
+      const runs = keys.map((key) => page.index.runs.findIndex((run) => run.key === key)).filter((i) => i >= 0).slice(0, MAX_RUNS);
+      const time = Number(page.stateOf("t")) || 0;
+      page.withRuns("compare", runs, () => { state.runs = runs; state.time = time; draw(); });
     });
   };
 })(window.stillpoint);

@@ -81,10 +81,9 @@
     return "stillpoint bench " + quoted(plan.name) + " --filter " + quoted(bare(run.label)) + " --filter " + quoted(bare(run.sequence)) + " --store repeated.sqlite";
   }
 
-  page.selectRun = function (index) {
-    const runs = page.index.runs;
-    state.run = (index + runs.length) % runs.length;
-    const run = runs[state.run], series = page.series(state.run);
+  function show(index) {
+    state.run = index;
+    const run = page.index.runs[index], series = page.series(index);
     state.frame = null;
     state.worstAt = -1;
     byId("run").value = state.run;
@@ -106,14 +105,22 @@
     state.inspector.select(state.run, series);
     byId("time-histograms").hidden = page.drawHistograms(byId("histograms"), series) === 0;
     byId("runs").dataset.run = run.key;
+  }
+
+  // Shows a run once its data is there; `then` is called after that.
+  page.selectRun = function (index, then) {
+    const count = page.index.runs.length, run = (index + count) % count;
+    page.withRuns("runs", [run], () => { show(run); if (then) then(); });
   };
 
   function step(frames) {
+    if (state.run < 0) return;
     const series = page.series(state.run);
     if (series.frames) point(Math.max(0, Math.min(series.frames - 1, (state.frame === null ? -1 : state.frame) + frames)), false);
   }
 
   function stepWorst(steps) {
+    if (state.run < 0) return;
     const worst = page.series(state.run).worst;
     if (!worst.length) return;
     state.worstAt = (Math.max(state.worstAt, steps > 0 ? -1 : 0) + steps + worst.length) % worst.length;
@@ -132,8 +139,7 @@
   const indexOf = (key) => page.index.runs.findIndex((run) => run.key === key);
 
   function openRun(run) {
-    page.selectRun(run);
-    page.setState({ run: page.index.runs[state.run].key, frame: null, zoom: null }, true);
+    page.selectRun(run, () => page.setState({ run: page.index.runs[state.run].key, frame: null, zoom: null }, true));
   }
 
   // Links to runs keep the other values of the state.
@@ -148,9 +154,11 @@
     byId("runs").scrollIntoView();
   }
 
+  const resetZoom = () => { if (state.charts) state.charts.resetZoom(); };
+
   const KEYS = {
     ArrowRight: (event) => step(event.shiftKey ? 10 : 1), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1),
-    n: () => openRun(state.run + 1), p: () => openRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: () => state.charts.resetZoom(),
+    n: () => openRun(state.run + 1), p: () => openRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: resetZoom,
   };
 
   function onKey(event) {
@@ -165,10 +173,11 @@
   function fromState() {
     const first = page.index.runs.findIndex((run) => run.outcome === "ok" && run.frames > 0);
     const run = indexOf(page.stateOf("run")), frame = page.stateOf("frame"), zoom = page.stateOf("zoom");
-    page.selectRun(run >= 0 ? run : Math.max(first, 0));
-    if (run < 0) return;
-    if (zoom) state.charts.zoom(...zoom.split(" ").map(Number));
-    if (frame !== null && Number(frame) < page.series(run).frames) point(Number(frame), false);
+    page.selectRun(run >= 0 ? run : Math.max(first, 0), () => {
+      if (run < 0) return;
+      if (zoom) state.charts.zoom(...zoom.split(" ").map(Number));
+      if (frame !== null && Number(frame) < page.series(run).frames) point(Number(frame), false);
+    });
   }
 
   page.startExplorer = function () {
@@ -182,15 +191,14 @@
     state.inspector = page.inspector((frame) => { state.worstAt = page.series(state.run).worst.indexOf(frame); point(frame, false); });
     document.addEventListener("click", onLink);
     byId("compare-this").addEventListener("click", () => { page.compareRuns([...page.comparedRuns(), state.run]); byId("compare").scrollIntoView(); });
-    byId("reset-zoom").addEventListener("click", () => state.charts.resetZoom());
+    byId("reset-zoom").addEventListener("click", resetZoom);
     document.addEventListener("keydown", onKey);
-    window.addEventListener("resize", () => { state.charts.resize(); state.views.redraw(); });
+    window.addEventListener("resize", () => { if (state.charts) { state.charts.resize(); state.views.redraw(); } });
     page.onState(fromState);
   };
   page.redrawExplorer = function () {
     const frame = state.frame;
-    page.selectRun(state.run);
-    if (frame !== null) point(frame, false);
+    if (state.run >= 0) page.selectRun(state.run, () => { if (frame !== null) point(frame, false); });
   };
   page.selectedRun = () => state.run;
 })(window.stillpoint);

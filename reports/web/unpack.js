@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Access to the data embedded in the page; series are decoded on demand.
+// Access to the data of the page, embedded or in side files; series are decoded on demand.
 "use strict";
 window.stillpoint = {};
 (function (page) {
@@ -27,6 +27,38 @@ window.stillpoint = {};
     return best;
   };
 
+  // --- data of runs in side files, of a page that is served ---
+  // {series, images, truth} by run, still packed.
+  const loaded = new Map(), loading = new Map(), wanted = new Map();
+  const has = (run) => loaded.has(run) || document.getElementById("series-" + run) !== null;
+
+  async function request(run) {
+    const response = await fetch("runs/" + page.index.runs[run].key + ".json");
+    if (!response.ok) throw new Error(response.status + " " + response.statusText);
+    loaded.set(run, await response.json());
+  }
+
+  function load(run) {
+    if (!loading.has(run)) loading.set(run, request(run).finally(() => loading.delete(run)));
+    return loading.get(run);
+  }
+
+  // Calls `action` when the data of the runs is there: at once, or after loading it. Of several calls for a section only
+  // the last one counts.
+  page.withRuns = async function (section, runs, action) {
+    const lacking = runs.filter((run) => !has(run)), place = document.getElementById(section), call = {};
+    wanted.set(section, call);
+    let problem = "";
+    if (lacking.length) {
+      place.setAttribute("aria-busy", "true");
+      await Promise.all(lacking.map(load)).catch((error) => { problem = "The data of a run cannot be loaded (" + error.message + "). Is the server running? Reload the page to select it again."; });
+      if (wanted.get(section) !== call) return;
+      place.removeAttribute("aria-busy");
+    }
+    document.getElementById("load-problem").textContent = problem;
+    if (!problem) action();
+  };
+
   // Series of a run: {start, frames, t, numbers, worst, loops, faults, columns: {name: numbers}}; a few are cached.
   // `numbers`: frame numbers if the page contains a part of the frames only, else null.
   // A fault: {begin, end: times; text}.
@@ -35,7 +67,7 @@ window.stillpoint = {};
   page.series = function (run) {
     if (!cache.has(run)) {
       if (cache.size > 24) cache.clear();
-      const packed = parse("series-" + run);
+      const packed = loaded.has(run) ? loaded.get(run).series : parse("series-" + run);
       const columns = {};
       for (const [name, column] of Object.entries(packed.columns)) columns[name] = page.unpack(column);
       const t = page.unpack(packed.t);
@@ -53,13 +85,14 @@ window.stillpoint = {};
   // {frame: JPEG in base64} of a run.
   const images = new Map();
   page.images = function (run) {
+    if (loaded.has(run)) return loaded.get(run).images;
     if (!images.has(run)) images.set(run, document.getElementById("images-" + run) ? parse("images-" + run) : {});
     return images.get(run);
   };
 
   // Ground truth of a run, with times relative to its first frame; null without one.
   page.truth = function (run, start) {
-    const packed = page.index.truths[page.index.runs[run].truth];
+    const packed = loaded.has(run) ? loaded.get(run).truth : page.index.truths[page.index.runs[run].truth];
     if (!packed) return null;
     return {
       t: page.unpack(packed.t).map((t) => t + packed.start - start),

@@ -166,7 +166,9 @@ std::vector<OutputFile> in_folder(const std::string& folder, std::vector<OutputF
 std::vector<OutputFile> served_files(const Store& store, const std::string& system,
                                      const std::string& folder) {
   std::vector<OutputFile> files = in_folder(folder, report::dashboard_files(store, system));
-  files.push_back({"report/index.html", report::report_html(store, report::report_subject(store, ""))});
+  for (OutputFile& file :
+       in_folder("report/", report::served_report(store, report::report_subject(store, ""))))
+    files.push_back(std::move(file));
   return files;
 }
 
