@@ -33,7 +33,7 @@
   };
 
   page.STATUS = ["initializing", "tracking", "degraded", "dead reckoning", "lost", "relocated"];
-  const STATUS_COLORS = { initializing: "faint", degraded: "c4", "dead reckoning": "c3", lost: "bad", relocated: "c2" };
+  const STATUS_COLORS = { initializing: "faint", degraded: "caution", "dead reckoning": "other", lost: "bad", relocated: "good" };
 
   // Name of the status of a frame. Systems without one: initializing before the first pose, lost without one later.
   page.statusAt = function (series, frame) {
@@ -135,6 +135,7 @@
         for (const plot of plots) plot.setCursor({ left: plot.valToPos(series.t[frame], "x"), top: plot.over.clientHeight / 2 }, false);
       },
       zoom: zoomAll,
+      zoomBy(factor, frame) { if (plots.length) zoomAll(...page.zoomed(plots[0].scales.x, factor, frame === null ? null : series.t[frame], [series.t[0], series.t[series.t.length - 1]])); },
       resetZoom() { zoomAll(series.t[0], series.t[series.t.length - 1]); },
       resize() { for (const plot of plots) plot.setSize({ width: place.clientWidth, height: plot.height }); },
     };

@@ -8,7 +8,7 @@
   const state = { runs: [], time: 0, end: 0, plot: null, path: null, moving: false };
 
   const dash = (i) => DASHES[i % DASHES.length];
-  const color = (i) => page.color("c" + (i % 7));
+  const color = (i) => page.color("c" + (i % page.LINE_COLORS));
   const series = (i) => page.series(state.runs[i]);
   const info = (i) => page.index.runs[state.runs[i]];
   const frameAt = (i, time) => page.nearest(series(i).t, time);
@@ -75,7 +75,7 @@
     const most = Math.max(...drawn.map((i) => series(i).frames)), count = Math.min(BINS, most);
     const times = Array.from({ length: count }, (_, i) => (i * state.end) / (count - 1 || 1));
     place.append(page.element("figcaption", {}, "Position error after alignment (ATE)" + (most > BINS ? "; largest of each " + (state.end / BINS).toFixed(2) + " s" : "")));
-    const lines = drawn.map((i) => page.line(own[i] + " [m]", "c" + (i % 7), { dash: dash(i), spanGaps: true }));
+    const lines = drawn.map((i) => page.line(own[i] + " [m]", "c" + (i % page.LINE_COLORS), { dash: dash(i), spanGaps: true }));
     state.plot = new uPlot({
       width: place.clientWidth || 900, height: 200, cursor: { drag: { x: true, y: false } }, scales: { x: { time: false } }, axes: page.axes("m"),
       series: [{ label: "time [s]", value: page.number }, ...lines],

@@ -62,10 +62,12 @@
   function showLoops(series) {
     const table = headed(["time [s]", "earlier visit [s]", "inliers", "residual [px]", "result"]);
     for (const loop of series.loops) {
-      const row = page.element("tr");
-      for (const text of [loop.at.toFixed(2), loop.back.toFixed(2), loop.inliers, loop.residual.toFixed(2), loop.reason === "" ? "accepted" : "refused: " + loop.reason.replaceAll("_", " ")])
+      const row = page.element("tr"), select = page.element("td"), button = page.element("button", { type: "button" }, loop.at.toFixed(2));
+      button.addEventListener("click", () => { if (loop.query >= 0) point(loop.query, false); });
+      select.append(button);
+      row.append(select);
+      for (const text of [loop.back.toFixed(2), loop.inliers, loop.residual.toFixed(2), loop.reason === "" ? "accepted" : "refused: " + loop.reason.replaceAll("_", " ")])
         row.append(page.element("td", {}, text));
-      row.addEventListener("click", () => { if (loop.query >= 0) point(loop.query, false); });
       table.tBodies[0].append(row);
     }
     byId("loops").replaceChildren(table);
@@ -154,11 +156,12 @@
     byId("runs").scrollIntoView();
   }
 
+  const zoomBy = (factor) => { if (state.charts) state.charts.zoomBy(factor, state.frame); };
   const resetZoom = () => { if (state.charts) state.charts.resetZoom(); };
 
   const KEYS = {
     ArrowRight: (event) => step(event.shiftKey ? 10 : 1), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1),
-    n: () => openRun(state.run + 1), p: () => openRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: resetZoom,
+    n: () => openRun(state.run + 1), p: () => openRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: resetZoom, "+": () => zoomBy(0.5), "-": () => zoomBy(2),
   };
 
   function onKey(event) {

@@ -40,7 +40,7 @@
     const place = byId("flame"), tree = treeOf(flame);
     place.replaceChildren();
     const chart = d3flame.flamegraph().width(place.clientWidth || 900).cellHeight(20).inverted(true).transitionDuration(0).tooltip(false)
-      .selfValue(false).setLabelHandler(label).setColorMapper((node) => page.color("c" + ((node.depth + node.data.name.length) % 7)));
+      .selfValue(false).setLabelHandler(label).setColorMapper((node) => `color-mix(in srgb, ${page.color("c" + ((node.depth + node.data.name.length) % page.LINE_COLORS))} 40%, ${page.color("background")})`);
     d3flame.select(place).datum(tree).call(chart);
     place.setAttribute("aria-label", "Flame chart of " + flame.label + ": " + tree.value.toPrecision(3) + " ms per frame");
     byId("flame-text").textContent = tree.value.toPrecision(3) + " ms per frame, mean over " + flame.frames + " frames";

@@ -100,6 +100,13 @@ window.stillpoint = {};
     };
   };
 
+  // The range {min, max} of an axis, scaled by `factor` around `at` (null: its center) and limited to `whole`.
+  page.zoomed = function ({ min, max }, factor, at, [low, high]) {
+    const center = at !== null && min <= at && at <= max ? at : (min + max) / 2;
+    return [Math.max(low, center - factor * (center - min)), Math.min(high, center + factor * (max - center))];
+  };
+
+  page.LINE_COLORS = 6; // --c0 ... of page.css
   page.color = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   page.element = function (tag, attributes, text) {
     const element = document.createElement(tag);

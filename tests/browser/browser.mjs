@@ -54,3 +54,43 @@ export async function lightAndDarkDiffer(page) {
   assert.notEqual(await background(), light);
   await page.click("#theme");
 }
+
+// Checks the contrast of all texts in both themes (WCAG 2.1, level AA, without the exception for large text).
+export async function contrastSuffices(page) {
+  for (let i = 0; i < 2; ++i) {
+    const low = await page.evaluate(() => {
+      const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+      const channels = (colors) => { context.clearRect(0, 0, 1, 1); for (const color of colors) { context.fillStyle = color; context.fillRect(0, 0, 1, 1); } return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3); };
+      const luminance = (colors) => channels(colors).map((value) => value / 255).map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)).reduce((sum, value, c) => sum + value * [0.2126, 0.7152, 0.0722][c], 0);
+      const found = new Set();
+      for (const element of document.querySelectorAll("body *")) {
+        if (!element.checkVisibility() || element.closest("svg, canvas") || ![...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim())) continue;
+        const grounds = [];
+        for (let at = element; at; at = at.parentElement) grounds.unshift(getComputedStyle(at).backgroundColor);
+        const [a, b] = [luminance(grounds), luminance([...grounds, getComputedStyle(element).color])].toSorted();
+        const contrast = (b + 0.05) / (a + 0.05);
+        if (contrast < 4.5) found.add(`${element.tagName}.${element.className} ${contrast.toFixed(2)}`);
+      }
+      return [...found];
+    });
+    assert.deepEqual(low, []);
+    await page.click("#theme");
+  }
+}
+
+// Checks that Tab reaches every visible control, and that each shows that it has the focus.
+export async function keyboardSuffices(page) {
+  const count = await page.evaluate(() => {
+    const controls = [...document.querySelectorAll("a[href], button, select, input, textarea, summary, [tabindex='0']")].filter((element) => element.checkVisibility() && !element.disabled);
+    window.focused = new Map();
+    document.activeElement.blur();
+    scrollTo(0, 0);
+    document.addEventListener("focusin", (event) => window.focused.set(event.target, getComputedStyle(event.target).outlineStyle !== "none"));
+    window.controls = controls;
+    return controls.length;
+  });
+  for (let i = 0; i < count + 5; ++i) await page.keyboard.press("Tab");
+  const name = "((element) => element.outerHTML.slice(0, 80))";
+  assert.deepEqual(await page.evaluate(`window.controls.filter((element) => !window.focused.has(element)).map(${name})`), [], "not reached by Tab");
+  assert.deepEqual(await page.evaluate(`[...window.focused].filter(([, visible]) => !visible).map(([element]) => ${name}(element))`), [], "without a visible focus");
+}

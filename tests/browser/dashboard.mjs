@@ -2,7 +2,7 @@
 // Tests of the dashboard page. Run by dashboard.sh with the store of history_store.mjs.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
-import { browser, drawnCharts, lightAndDarkDiffer, open, selection, ready, test } from "./browser.mjs";
+import { browser, contrastSuffices, drawnCharts, keyboardSuffices, lightAndDarkDiffer, open, selection, ready, test } from "./browser.mjs";
 
 const { PAGE, STILLPOINT_SCREENSHOTS } = process.env;
 const folder = "file://" + PAGE.slice(0, PAGE.lastIndexOf("/") + 1);
@@ -136,6 +136,21 @@ await test("hostile names are shown as text", async () => {
 });
 
 await test("the theme button switches between light and dark", () => lightAndDarkDiffer(page));
+
+await test("text has a contrast of 4.5 in both themes", () => contrastSuffices(page));
+
+await test("the keyboard reaches every control, with a visible focus, and zooms", async () => {
+  await keyboardSuffices(page);
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("0");
+  const whole = (await shown(page)).zoom;
+  await page.keyboard.press("+");
+  const [low, high] = (await shown(page)).zoom.split(" ").map(Number);
+  assert.ok(Math.abs(high - low - 30) < 0.1, `${low} to ${high}`);
+  await page.keyboard.press("-");
+  await page.keyboard.press("-");
+  assert.equal((await shown(page)).zoom, whole);
+});
 
 await test("no network requests, warnings or errors occurred", () => assert.deepEqual(page.problems, []));
 

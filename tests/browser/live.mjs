@@ -2,7 +2,7 @@
 // Tests of `serve --watch` while a bench executes a plan. Run by pages.sh.
 //   URL=http://... node live.mjs
 import assert from "node:assert/strict";
-import { browser, test } from "./browser.mjs";
+import { browser, contrastSuffices, keyboardSuffices, test } from "./browser.mjs";
 
 const { URL: ADDRESS } = process.env;
 const page = await browser.newPage({ viewport: { width: 390, height: 844 } });
@@ -51,6 +51,8 @@ await test("at the end all runs are listed, the newest first, and report and das
   assert.match(now.text, /^8 of 8 runs$/);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than a phone");
   assert.deepEqual(loads, ["", "events"]);
+  await contrastSuffices(page);
+  await keyboardSuffices(page);
   for (const link of ["report", "dashboard"]) {
     const opened = await browser.newPage();
     assert.equal((await opened.goto(ADDRESS + link + "/")).status(), 200);

@@ -2,7 +2,7 @@
 // Tests of the report page. Run by pages.sh.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { browser, drawnCharts, lightAndDarkDiffer, open, selection, test } from "./browser.mjs";
+import { browser, contrastSuffices, drawnCharts, keyboardSuffices, lightAndDarkDiffer, open, selection, test } from "./browser.mjs";
 
 const { PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
 
@@ -103,26 +103,22 @@ await test("the address holds the state of the page", async () => {
   await page.click("#theme");
 });
 
-await test("text has a contrast of 4.5 in both themes", async () => {
-  for (let i = 0; i < 2; ++i) {
-    const low = await page.evaluate(() => {
-      const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
-      const channels = (colors) => { context.clearRect(0, 0, 1, 1); for (const color of colors) { context.fillStyle = color; context.fillRect(0, 0, 1, 1); } return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3); };
-      const luminance = (colors) => channels(colors).map((value) => value / 255).map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)).reduce((sum, value, c) => sum + value * [0.2126, 0.7152, 0.0722][c], 0);
-      const found = new Set();
-      for (const element of document.querySelectorAll("body *")) {
-        if (!element.checkVisibility() || element.closest("svg, canvas") || ![...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim())) continue;
-        const grounds = [];
-        for (let at = element; at; at = at.parentElement) grounds.unshift(getComputedStyle(at).backgroundColor);
-        const [a, b] = [luminance(grounds), luminance([...grounds, getComputedStyle(element).color])].toSorted();
-        const contrast = (b + 0.05) / (a + 0.05);
-        if (contrast < 4.5) found.add(`${element.tagName}.${element.className} ${contrast.toFixed(2)}`);
-      }
-      return [...found];
-    });
-    assert.deepEqual(low, []);
-    await page.click("#theme");
-  }
+await test("text has a contrast of 4.5 in both themes", () => contrastSuffices(page));
+
+await test("the keyboard reaches every control, with a visible focus, and zooms", async () => {
+  await keyboardSuffices(page);
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("0");
+  const span = async () => { const [low, high] = (await runs(page)).zoom.split(" ").map(Number); return high - low; };
+  const whole = await span();
+  await page.keyboard.press("+");
+  assert.ok(Math.abs(await span() - whole / 2) < 0.01, "half of the time");
+  await page.keyboard.press("-");
+  assert.ok(Math.abs(await span() - whole) < 0.01, "all of it");
+  const [first, second] = await page.$$eval("#table-ate_rmse_m a[data-runs]", (links) => links.map((link) => link.dataset.runs));
+  await page.locator("#table-ate_rmse_m a[data-runs]").nth(0).press("Enter");
+  await page.locator("#table-ate_rmse_m a[data-runs]").nth(1).press("Shift+Enter");
+  assert.equal((await selection(page, "compare")).runs, [first, second].join(" ").replaceAll(" ", "."));
 });
 
 await test("the error has a band of three claimed standard deviations, and faults a bar", async () => {

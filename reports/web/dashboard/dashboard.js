@@ -71,11 +71,11 @@
     const accuracy = chosen("accuracy"), cost = chosen("cost");
     const lines = [];
     if (accuracy !== undefined) lines.push({ index: accuracy, scale: "accuracy", color: "c0" });
-    if (cost !== undefined) lines.push({ index: cost, scale: "cost", color: "c1" });
+    if (cost !== undefined) lines.push({ index: cost, scale: "cost", color: "c2" });
     const groups = [{ place: byId("timeline"), id: "timeline", title: "Accuracy and cost over commits", lines, height: 260 }];
     for (const index of seriesOf(state.subject)) {
       const unit = series[index].unit ? " [" + series[index].unit + "]" : "";
-      groups.push({ place: byId("metric-charts"), id: series[index].metric, title: series[index].metric + unit, height: 130, lines: [{ index, scale: "y", color: series[index].family === "cost" ? "c1" : "c0" }] });
+      groups.push({ place: byId("metric-charts"), id: series[index].metric, title: series[index].metric + unit, height: 130, lines: [{ index, scale: "y", color: series[index].family === "cost" ? "c2" : "c0" }] });
     }
     state.charts = page.drawHistory(groups, (commit) => point(commit, true), open, (min, max) => { byId("history").dataset.zoom = min.toFixed(2) + " " + max.toFixed(2); });
     // Cursor positions are defined only after the first draw.
@@ -132,6 +132,7 @@
   const KEYS = {
     ArrowRight: (event) => stepCommit(event.shiftKey ? 10 : 1), ArrowLeft: (event) => stepCommit(event.shiftKey ? -10 : -1),
     n: () => stepSubject(1), p: () => stepSubject(-1), r: nextRegression, 0: () => state.charts.resetZoom(),
+    "+": () => state.charts.zoomBy(0.5, state.commit), "-": () => state.charts.zoomBy(2, state.commit),
     Enter: () => { if (state.commit !== null) open(state.commit); },
   };
 

@@ -3,7 +3,7 @@
 "use strict";
 (function (page) {
   const cursor = uPlot.sync("commits");
-  const COLORS = { open: "bad", accepted: "faint", improved: "c2", resolved: "c4", neutral: "c3" };
+  const COLORS = { open: "bad", accepted: "faint", improved: "good", resolved: "caution", neutral: "other" };
   const label = (i) => (page.index.commits[i] ? page.index.commits[i].label : "");
   const number = (u, value) => (value === null || value === undefined ? "-" : Number(value.toPrecision(4)).toString());
 
@@ -120,10 +120,11 @@
       plots.push(chart(figure, group.lines, group.height, { onCommit, onOpen, onZoom: zoom }));
     }
     const last = page.index.commits.length - 1;
-    const resetZoom = () => zoom(-0.5, Math.max(last, 1) + 0.5);
+    const whole = [-0.5, Math.max(last, 1) + 0.5], resetZoom = () => zoom(...whole);
     resetZoom();
     return {
-      zoom, resetZoom,
+      resetZoom,
+      zoomBy(factor, commit) { if (plots.length) zoom(...page.zoomed(plots[0].scales.x, factor, commit, whole)); },
       point(commit) { for (const plot of plots) plot.setCursor({ left: plot.valToPos(commit, "x"), top: plot.over.clientHeight / 2 }, false); },
       resize() { for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height }); },
       destroy() { for (const plot of plots) plot.destroy(); },
