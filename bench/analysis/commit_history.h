@@ -16,6 +16,9 @@ namespace stillpoint::bench {
 struct Commit {
   std::string name;  ///< git commit, with "+" and a hash of uncommitted changes if any; else the build name
   std::string time;  ///< UTC commit time; if not in the manifests, start of the first run
+  std::string subject{};   ///< first line of its message; not in a store, empty if unknown
+  std::string authored{};  ///< author date, UTC; same
+  std::string link{};      ///< its page at a code host; same
 };
 
 /// What a value was measured on. Values of different machines, or of different data under the same name,

@@ -136,6 +136,17 @@ std::string link_to(const bench::CommitHistory& history, std::size_t commit, con
                      escape_html(commit_label(target.name)));
 }
 
+/// Subject, author date and link of a commit, as far as they are known.
+std::string message_html(const bench::Commit& commit) {
+  std::string text;
+  if (!commit.subject.empty()) text += "<p>" + escape_html(commit.subject) + "</p>\n";
+  if (!commit.authored.empty())
+    text += "<p class=\"hint\">Author date: " + escape_html(commit.authored) + "</p>\n";
+  if (!commit.link.empty())
+    text += fmt::format("<p><a href=\"{}\">The commit at its code host</a></p>\n", escape_html(commit.link));
+  return text;
+}
+
 }  // namespace
 
 std::string commit_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes,
@@ -147,6 +158,7 @@ std::string commit_html(const bench::CommitHistory& history, const bench::Histor
       {{"title", escape_html(commit_label(subject.name))},
        {"name", escape_html(subject.name)},
        {"time", escape_html(subject.time)},
+       {"message", message_html(subject)},
        {"styles", std::string(web_file("page.css")) + std::string(web_file("dashboard/dashboard.css"))},
        {"neighbors", link_to(history, before, "previous:") + link_to(history, commit + 1, "next:")},
        {"shifts", shifts_html(history, changes, commit)},
@@ -161,7 +173,15 @@ constexpr std::string_view kDashboardScripts[] = {"vendor/uPlot.iife.min.js", "u
 
 std::string commit_link(const bench::CommitHistory& history, std::size_t commit) {
   const bench::Commit& target = history.commits[commit];
-  return fmt::format("<a href=\"{}\">{}</a>", commit_file(target), escape_html(commit_label(target.name)));
+  return fmt::format("<a href=\"{}\" title=\"{}\">{}</a>", commit_file(target), escape_html(target.subject),
+                     escape_html(commit_label(target.name)));
+}
+
+/// "A .. B", and the subject of the second one.
+std::string between_html(const bench::CommitHistory& history, std::size_t before, std::size_t after) {
+  const std::string& subject = history.commits[after].subject;
+  return commit_link(history, before) + " .. " + commit_link(history, after) +
+         (subject.empty() ? "" : "<span class=\"subject\">" + escape_html(subject) + "</span>");
 }
 
 std::string series_link(const bench::CommitHistory& history, std::size_t series) {
@@ -222,10 +242,10 @@ std::string change_row(const bench::CommitHistory& history, const ShiftGroup& gr
   const bench::LevelShift& largest = *group.shifts.front();
   const bench::HistorySeries& series = history.series[largest.series];
   return fmt::format(
-      "<tr>{}<td class=\"text\">{} .. {}</td><td class=\"text\">{}{}</td>"
+      "<tr>{}<td class=\"text\">{}</td><td class=\"text\">{}{}</td>"
       "<td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
       "class=\"text\">{}</td></tr>\n",
-      metric_heading(group.metric), commit_link(history, group.before), commit_link(history, group.after),
+      metric_heading(group.metric), between_html(history, group.before, group.after),
       series_link(history, largest.series), members_html(history, group), escape_html(series.subject.host),
       escape_html(value_label(largest.level_before, series.unit)),
       escape_html(value_label(largest.level_after, series.unit)), change_label(largest),
@@ -265,11 +285,11 @@ std::string suspected_html(const bench::CommitHistory& history, const bench::His
     const bench::SuspectedChange& change = suspected[i];
     const bench::HistorySeries& series = history.series[change.series];
     rows += fmt::format(
-        "<tr>{}<td class=\"text\">{} .. {}</td><td class=\"text\">{}</td><td class=\"text\">{}</td>"
+        "<tr>{}<td class=\"text\">{}</td><td class=\"text\">{}</td><td class=\"text\">{}</td>"
         "<td>{}</td><td>{}</td><td>{:.1f}</td><td>{} + {}</td><td>{}</td><td class=\"text\">{}</td></tr>\n",
-        metric_heading(series.metric), commit_link(history, change.before),
-        commit_link(history, change.after), series_link(history, change.series),
-        escape_html(series.subject.host), escape_html(value_label(change.level_before, series.unit)),
+        metric_heading(series.metric), between_html(history, change.before, change.after),
+        series_link(history, change.series), escape_html(series.subject.host),
+        escape_html(value_label(change.level_before, series.unit)),
         escape_html(value_label(change.level_after, series.unit)),
         bench::size_in_margins(change.level_before, change.level_after, *series.gated), change.count_before,
         change.count_after, p_label(change), change.worse ? "worse" : "better");
@@ -336,7 +356,8 @@ std::string index_html(const bench::CommitHistory& history, const bench::History
 
 }  // namespace
 
-AnalyzedHistory analyze_history(const bench::Store& store, const std::string& system) {
+AnalyzedHistory analyze_history(const bench::Store& store, const std::string& system,
+                                const DescribeCommits& describe) {
   AnalyzedHistory analyzed{.history = bench::commit_history(store, system), .changes = {}};
   if (analyzed.history.commits.empty()) {
     const std::vector<std::string> others = bench::systems_of(store);
@@ -346,12 +367,14 @@ AnalyzedHistory analyze_history(const bench::Store& store, const std::string& sy
             (others.empty() ? "create some with `stillpoint bench PLAN --store FILE`"
                             : fmt::format("choose a system by --system: {}", fmt::join(others, ", "))));
   }
+  if (describe) describe(analyzed.history.commits);
   analyzed.changes = bench::history_changes(analyzed.history, store.acceptances());
   return analyzed;
 }
 
-std::vector<bench::OutputFile> dashboard_files(const bench::Store& store, const std::string& system) {
-  const auto [history, changes] = analyze_history(store, system);
+std::vector<bench::OutputFile> dashboard_files(const bench::Store& store, const std::string& system,
+                                               const DescribeCommits& describe) {
+  const auto [history, changes] = analyze_history(store, system, describe);
   std::vector<bench::OutputFile> files = {{"index.html", index_html(history, changes)},
                                           {"regressions.md", regressions_markdown(history, changes)},
                                           {"regressions.json", regressions_json(history, changes)},

@@ -120,10 +120,11 @@ Json tooltips_json(const bench::CommitHistory& history) {
 Json commits_json(const std::vector<bench::Commit>& commits) {
   Json list = Json::array();
   for (const bench::Commit& commit : commits) {
-    list.push_back({{"name", clean_line(commit.name)},
-                    {"label", commit_label(commit.name)},
-                    {"time", clean_line(commit.time)},
-                    {"page", commit_file(commit)}});
+    Json& json = list.emplace_back(Json{{"name", clean_line(commit.name)},
+                                        {"label", commit_label(commit.name)},
+                                        {"time", clean_line(commit.time)},
+                                        {"page", commit_file(commit)}});
+    if (!commit.subject.empty()) json["subject"] = clean_line(commit.subject);
   }
   return list;
 }
@@ -264,12 +265,19 @@ Json drift_json(const bench::CommitHistory& history, const bench::MetricDrift& d
   return json;
 }
 
+/// Label, with its link, and subject.
+std::string commit_markdown(const bench::Commit& commit) {
+  std::string text = escape_markdown(commit_label(commit.name));
+  if (!commit.link.empty()) text = "[" + text + "](" + commit.link + ")";
+  return commit.subject.empty() ? text : text + " " + escape_markdown(commit.subject);
+}
+
 std::string group_row(const bench::CommitHistory& history, const ShiftGroup& group) {
   const bench::LevelShift& largest = *group.shifts.front();
   const bench::HistorySeries& series = history.series[largest.series];
   return fmt::format("| {} | {}..{} | {} | {} | {} to {} | {} | {} |\n", escape_markdown(group.metric),
                      escape_markdown(commit_label(history.commits[group.before].name)),
-                     escape_markdown(commit_label(history.commits[group.after].name)), group.shifts.size(),
+                     commit_markdown(history.commits[group.after]), group.shifts.size(),
                      escape_markdown(subject_label(series.subject)),
                      escape_markdown(value_label(largest.level_before, series.unit)),
                      escape_markdown(value_label(largest.level_after, series.unit)), change_label(largest),
@@ -302,7 +310,7 @@ std::string suspected_markdown(const bench::CommitHistory& history, const bench:
     const bench::SuspectedChange& change = suspected[i];
     const bench::HistorySeries& series = history.series[change.series];
     rows += fmt::format("| {} | {} | {} | {} to {} | {} | {} |\n", escape_markdown(series.metric),
-                        escape_markdown(commit_label(history.commits[change.after].name)),
+                        commit_markdown(history.commits[change.after]),
                         escape_markdown(subject_label(series.subject)),
                         escape_markdown(value_label(change.level_before, series.unit)),
                         escape_markdown(value_label(change.level_after, series.unit)),

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +69,54 @@ TEST(StoreAccept, ClosesARegressionUntilTheAcceptanceIsWithdrawn) {
   EXPECT_NE(run_program({"store", "accepted", "--store", file}).out.find("known"), std::string::npos);
   EXPECT_EQ(store("withdraw", {}), 0);
   EXPECT_EQ(run_program({"regressions", file}).exit_code, 1);
+}
+
+TEST(DashboardCommand, ShowsSubjectsAndLinksOfCommits) {
+  const TemporaryFolder folder;
+  const std::string repository = (folder.path() / "r").string();
+  const std::string git = "GIT_CONFIG_GLOBAL=/dev/null git -c user.name=t -c user.email=t@example.org ";
+  ASSERT_EQ(std::system((git + "init -q " + repository + " && cd " + repository + " && " + git +
+                         "commit -q --allow-empty --date 2024-01-02T03:04:05Z -m 'Draw <b>faster</b>' && git "
+                         "rev-parse HEAD >../hash")
+                            .c_str()),
+            0);
+  std::string hash;
+  std::ifstream(folder.path() / "hash") >> hash;
+  const std::string file = (folder.path() / "s.sqlite").string();
+  {
+    bench::StoreWriter writer(file);
+    for (const std::string& build : {std::string("aaa"), hash, hash + "+0123", std::string(40, 'f')}) {
+      const bench::RunIdentity identity{.variant = "vo", .sequence = "a", .build = build};
+      ASSERT_EQ(writer.acquire(identity), bench::RunLease::kGranted);
+      writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", 0.5}}});
+    }
+  }
+  const fs::path out = folder.path() / "out";
+  const auto dashboard = [&](const std::string& url) {
+    return run_program(
+        {"dashboard", file, "--out", out.string(), "--repository", repository, "--commit-url", url});
+  };
+  const ProgramResult result = dashboard("https://example.org/{commit}");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  int described = 0;
+  for (const auto& page : fs::directory_iterator(out / "commits")) {
+    std::ifstream stream(page.path());
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (text.find("Draw &lt;b&gt;faster&lt;/b&gt;") == std::string::npos) continue;
+    ++described;
+    EXPECT_NE(text.find("2024-01-02T03:04:05Z"), std::string::npos);
+    EXPECT_NE(text.find("href=\"https://example.org/" + hash + "\""), std::string::npos);
+  }
+  EXPECT_EQ(described, 2);  // the commit, and the commit with changes
+  for (const char* url : {"javascript:{commit}", "https://example.org/"}) {
+    const ProgramResult wrong = dashboard(url);
+    EXPECT_EQ(wrong.exit_code, 2) << url;
+    EXPECT_NE(wrong.err.find("--commit-url"), std::string::npos) << wrong.err;
+  }
+  const ProgramResult none =
+      run_program({"dashboard", file, "--out", out.string(), "--repository", folder.path().string()});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("git"), std::string::npos) << none.err;
 }
 
 TEST(ServeCommand, ListensOnLoopbackUntilItIsInterrupted) {

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
+#include <ctime>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
+#include <sstream>
+#include <string_view>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -11,6 +16,7 @@
 #include "bench/analysis/commit_history.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
+#include "bench/executors/hosts.h"
 #include "bench/record/output_folder.h"
 #include "bench/serve/static_server.h"
 #include "bench/store/store.h"
@@ -71,11 +77,97 @@ Command report_command() {
 
 namespace {
 
+/// Where subjects and links of commits come from.
+struct CommitArguments {
+  std::string repository;
+  std::string url;
+};
+
+constexpr std::string_view kHashMark = "{commit}";
+
+std::vector<Option> commit_options(CommitArguments& arguments) {
+  return {
+      {"--repository", "Git repository with the commits: adds their subjects and author dates",
+       &arguments.repository},
+      {"--commit-url",
+       "Page of a commit at a code host, e.g. https://example.org/project/commit/{commit}; {commit} is its "
+       "hash",
+       &arguments.url}};
+}
+
+/// The hash in the name of a commit; empty if it is no hash.
+std::string hash_of(const Commit& commit) {
+  constexpr std::size_t kMinDigits = 7;
+  std::string hash = commit.name.substr(0, commit.name.find('+'));
+  const bool is_hash =
+      hash.size() >= kMinDigits && hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return is_hash ? hash : "";
+}
+
+/// Adds subjects and author dates of the commits that the repository contains.
+/// @throws InputError with the message of git
+void add_subjects(std::vector<Commit>& commits, const std::string& repository) {
+  constexpr char kFieldEnd = '\x1f';
+  ToolCall git{.program = "git",
+               .arguments = {"-C", repository, "-c", "log.showSignature=false", "log", "--no-walk=unsorted",
+                             "--ignore-missing", "--format=%H%x1f%at%x1f%s"}};
+  std::map<std::string, std::vector<Commit*>> by_hash;
+  for (Commit& commit : commits) {
+    const std::string hash = hash_of(commit);
+    if (!hash.empty()) by_hash[hash].push_back(&commit);
+  }
+  if (by_hash.empty()) return;
+  for (const auto& [hash, same] : by_hash) git.arguments.push_back(hash);
+  git.arguments.emplace_back("--");
+  std::istringstream lines(require_tool(git));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::string hash;
+    std::string seconds;
+    std::string subject;
+    std::getline(fields, hash, kFieldEnd);
+    std::getline(fields, seconds, kFieldEnd);
+    std::getline(fields, subject);
+    const auto next = by_hash.upper_bound(hash);
+    if (next == by_hash.begin() || !hash.starts_with(std::prev(next)->first)) continue;
+    for (Commit* commit : std::prev(next)->second) {
+      commit->subject = subject;
+      commit->authored = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time_t{std::stoll(seconds)}));
+    }
+  }
+}
+
+/// @throws InputError if the address of commits is no template
+report::DescribeCommits describe_commits(const CommitArguments& arguments) {
+  const std::string& url = arguments.url;
+  const bool is_web = url.starts_with("https://") || url.starts_with("http://");
+  if (!url.empty() && (!is_web || url.find(kHashMark) == std::string::npos))
+    throw InputError("--commit-url", "\"" + url +
+                                         "\" must begin with https:// or http:// and contain {commit}, e.g. "
+                                         "https://example.org/project/commit/{commit}");
+  return [arguments](std::vector<Commit>& commits) {
+    if (!arguments.repository.empty()) add_subjects(commits, arguments.repository);
+    if (arguments.url.empty()) return;
+    for (Commit& commit : commits) {
+      const std::string hash = hash_of(commit);
+      if (hash.empty()) continue;
+      commit.link = arguments.url;
+      commit.link.replace(commit.link.find(kHashMark), kHashMark.size(), hash);
+    }
+  };
+}
+
+Command with_commit_options(Command command, CommitArguments& arguments) {
+  for (Option& option : commit_options(arguments)) command.options.push_back(std::move(option));
+  return command;
+}
+
 struct DashboardArguments {
   std::string store;
   std::string out;
   std::string format = "markdown";
   std::string system;
+  CommitArguments commits;
 };
 
 /// Help of the option --system.
@@ -99,7 +191,8 @@ int dashboard(const DashboardArguments& arguments) {
                       {arguments.store});
   require_writable(out);
   const Store store(arguments.store);
-  const std::vector<OutputFile> files = report::dashboard_files(store, arguments.system);
+  const std::vector<OutputFile> files =
+      report::dashboard_files(store, arguments.system, describe_commits(arguments.commits));
   log_other_systems(store, commit_history(store, arguments.system).system);
   std::map<fs::path, std::vector<OutputFile>> by_folder;
   for (const OutputFile& file : files) {
@@ -116,7 +209,8 @@ int regressions(const DashboardArguments& arguments) {
     throw InputError("--format",
                      "unknown format \"" + arguments.format + "\"; expected one of: markdown, json");
   const Store store(arguments.store);
-  const auto [history, changes] = report::analyze_history(store, arguments.system);
+  const auto [history, changes] =
+      report::analyze_history(store, arguments.system, describe_commits(arguments.commits));
   log_other_systems(store, history.system);
   std::cout << (arguments.format == "json" ? report::regressions_json(history, changes)
                                            : report::regressions_markdown(history, changes));
@@ -127,25 +221,29 @@ int regressions(const DashboardArguments& arguments) {
 
 Command dashboard_command() {
   const auto arguments = std::make_shared<DashboardArguments>();
-  return {.name = "dashboard",
-          .summary = "Write a static HTML dashboard of all metrics over commits, with detected changes",
-          .example = "dashboard build/bench/store.sqlite --out build/dashboard",
-          .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
-                      {"--out", "Output folder of index.html, commits/ and the list of regressions",
-                       &arguments->out},
-                      {"--system", kSystemHelp, &arguments->system}},
-          .action = [arguments] { return dashboard(*arguments); }};
+  Command command = {
+      .name = "dashboard",
+      .summary = "Write a static HTML dashboard of all metrics over commits, with detected changes",
+      .example = "dashboard build/bench/store.sqlite --out build/dashboard",
+      .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
+                  {"--out", "Output folder of index.html, commits/ and the list of regressions",
+                   &arguments->out},
+                  {"--system", kSystemHelp, &arguments->system}},
+      .action = [arguments] { return dashboard(*arguments); }};
+  return with_commit_options(std::move(command), arguments->commits);
 }
 
 Command regressions_command() {
   const auto arguments = std::make_shared<DashboardArguments>();
-  return {.name = "regressions",
-          .summary = "List open regressions and drifts; exit code 0 = none, 1 = some, 2 = error",
-          .example = "regressions build/bench/store.sqlite --format json",
-          .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
-                      {"--format", "Output format: markdown or json [markdown]", &arguments->format},
-                      {"--system", kSystemHelp, &arguments->system}},
-          .action = [arguments] { return regressions(*arguments); }};
+  Command command = {
+      .name = "regressions",
+      .summary = "List open regressions and drifts; exit code 0 = none, 1 = some, 2 = error",
+      .example = "regressions build/bench/store.sqlite --format json",
+      .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
+                  {"--format", "Output format: markdown or json [markdown]", &arguments->format},
+                  {"--system", kSystemHelp, &arguments->system}},
+      .action = [arguments] { return regressions(*arguments); }};
+  return with_commit_options(std::move(command), arguments->commits);
 }
 
 namespace {
@@ -154,6 +252,7 @@ struct ServeArguments {
   std::string store;
   std::string system;
   bool watch = false;
+  CommitArguments commits;
   ServerOptions server;
 };
 
@@ -163,9 +262,10 @@ std::vector<OutputFile> in_folder(const std::string& folder, std::vector<OutputF
 }
 
 /// Files of the dashboard below `folder`, and of the report below "report/".
-std::vector<OutputFile> served_files(const Store& store, const std::string& system,
+std::vector<OutputFile> served_files(const Store& store, const ServeArguments& arguments,
                                      const std::string& folder) {
-  std::vector<OutputFile> files = in_folder(folder, report::dashboard_files(store, system));
+  std::vector<OutputFile> files = in_folder(
+      folder, report::dashboard_files(store, arguments.system, describe_commits(arguments.commits)));
   for (OutputFile& file :
        in_folder("report/", report::served_report(store, report::report_subject(store, ""))))
     files.push_back(std::move(file));
@@ -176,7 +276,7 @@ std::vector<OutputFile> served_files(const Store& store, const std::string& syst
 class WatchedPages {
  public:
   explicit WatchedPages(const ServeArguments& arguments)
-      : system_(arguments.system),
+      : arguments_(arguments),
         index_{"index.html",
                report::live_html(fs::path(arguments.store).filename().string(), StaticServer::kEvents)},
         reader_(arguments.store),
@@ -207,7 +307,7 @@ class WatchedPages {
     if (progress.ended == 0) return;
     const Clock::time_point start = Clock::now();
     try {
-      std::vector<OutputFile> files = served_files(reader_.store(), system_, "dashboard/");
+      std::vector<OutputFile> files = served_files(reader_.store(), arguments_, "dashboard/");
       files.push_back(index_);
       server_.replace(files);
       rendered_ = static_cast<std::size_t>(progress.ended);
@@ -217,7 +317,7 @@ class WatchedPages {
     next_rendering_ = Clock::now() + kPauses * (Clock::now() - start);
   }
 
-  std::string system_;
+  ServeArguments arguments_;
   OutputFile index_;
   ProgressReader reader_;
   StaticServer server_;
@@ -239,7 +339,7 @@ int serve(const ServeArguments& arguments) {
   constexpr std::chrono::milliseconds kInterval{500};
   block_interrupts();
   if (!arguments.watch) {
-    const StaticServer server(served_files(Store(arguments.store), arguments.system, ""), arguments.server);
+    const StaticServer server(served_files(Store(arguments.store), arguments, ""), arguments.server);
     log_address(server, arguments, "current content of the store; the report is at /report/");
     wait_for_interrupt();
     return kExitOk;

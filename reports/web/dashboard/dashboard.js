@@ -35,6 +35,7 @@
     const add = (label, text) => { const part = page.element("span", { title: tooltips[label] || "" }); part.append(page.element("b", {}, label + " "), text); place.append(part); };
     add("commit", page.element("a", { href: commit.page }, commit.label));
     add("time", commit.time);
+    if (commits.some((one) => one.subject)) add("subject", commit.subject || "-");
     for (const index of seriesOf(state.subject)) {
       if (series[index].family === "other") continue;
       const at = series[index].commits.indexOf(shown), runs = series[index].runs[at];
