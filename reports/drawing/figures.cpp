@@ -234,6 +234,9 @@ struct BoxValues {
 };
 constexpr const char* kBoxNote =
     "Boxes: quartiles and median; whiskers: 5th and 95th percentile; dots: RMSE.";
+constexpr const char* kViolinNote =
+    "Violins: density of the errors. Boxes: quartiles and median; whiskers: 5th and 95th percentile; dots: "
+    "RMSE.";
 
 /// @param values not empty
 BoxValues box_values(const std::vector<double>& values) {
@@ -242,13 +245,45 @@ BoxValues box_values(const std::vector<double>& values) {
   return {at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), rmse};
 }
 
-/// A box across the axis of the values, at `place` of the other axis.
+/// Density of values at equal steps from `low` to `high`, relative to its largest.
+struct Violin {
+  double low = 0.0;
+  double high = 0.0;
+  std::vector<double> density;  ///< empty: not drawn
+};
+
+/// Gaussian kernel density between the ends of the whiskers, with the bandwidth 0.9 min(s, IQR / 1.34)
+/// n^(-1/5) (Silverman, Density Estimation for Statistics and Data Analysis, 1986, eq. 3.31). Empty if the
+/// values are equal.
+Violin violin_of(const std::vector<double>& values, const BoxValues& box) {
+  constexpr std::size_t kPoints = 65;
+  const double spread = (box.upper_quartile - box.lower_quartile) / 1.34;
+  const double n = static_cast<double>(values.size());
+  double mean = 0.0;
+  for (const double value : values) mean += value / n;
+  const double deviation = std::sqrt(std::max(0.0, box.rmse * box.rmse - mean * mean));
+  const double bandwidth = 0.9 * std::min(deviation, spread) * std::pow(n, -0.2);
+  Violin violin{box.low, box.high, {}};
+  if (!(bandwidth > 0.0) || !(box.high > box.low)) return violin;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double at = box.low + (box.high - box.low) * static_cast<double>(i) / (kPoints - 1);
+    double sum = 0.0;
+    for (const double value : values) sum += std::exp(-0.5 * std::pow((value - at) / bandwidth, 2));
+    violin.density.push_back(sum);
+  }
+  const double largest = std::ranges::max(violin.density);
+  for (double& density : violin.density) density /= largest;
+  return violin;
+}
+
+/// A box across the axis of the values, at `place` of the other axis, in front of a violin.
 struct PlacedBox {
   BoxValues values;
   double place = 0.0;
   double half_width = 0.3;
   bool is_horizontal = false;
   Color color;
+  Violin violin = {};
 };
 
 Color tint(const Color& color) {
@@ -259,12 +294,28 @@ Color tint(const Color& color) {
   return {lighter(color.red), lighter(color.green), lighter(color.blue)};
 }
 
+/// Both sides of a violin, of three times the width of the box.
+std::vector<Point2> violin_outline(const PlotArea& area, const PlacedBox& box) {
+  const std::size_t count = box.violin.density.size();
+  std::vector<Point2> outline;
+  for (std::size_t k = 0; k < 2 * count; ++k) {
+    const std::size_t i = k < count ? k : 2 * count - 1 - k;
+    const double value = box.violin.low + (box.violin.high - box.violin.low) * static_cast<double>(i) /
+                                              static_cast<double>(count - 1);
+    const double place = box.place + (k < count ? 3.0 : -3.0) * box.half_width * box.violin.density[i];
+    outline.push_back(box.is_horizontal ? area.at(value, place) : area.at(place, value));
+  }
+  return outline;
+}
+
 void draw_box(Drawing& drawing, const PlotArea& area, const PlacedBox& box) {
   const auto at = [&](double value, double across) {
     const double place = box.place + across * box.half_width;
     return box.is_horizontal ? area.at(value, place) : area.at(place, value);
   };
   const BoxValues& v = box.values;
+  const bool has_violin = !box.violin.density.empty();
+  if (has_violin) drawing.marks.push_back(Polygon{violin_outline(area, box), tint(box.color)});
   const auto line = [&](Point2 from, Point2 to, double width) {
     drawing.marks.push_back(Polyline{{from, to}, box.color, width});
   };
@@ -275,7 +326,7 @@ void draw_box(Drawing& drawing, const PlotArea& area, const PlacedBox& box) {
   const std::vector<Point2> outline{at(v.lower_quartile, -1.0), at(v.upper_quartile, -1.0),
                                     at(v.upper_quartile, 1.0), at(v.lower_quartile, 1.0),
                                     at(v.lower_quartile, -1.0)};
-  drawing.marks.push_back(Polygon{outline, tint(box.color)});
+  drawing.marks.push_back(Polygon{outline, has_violin ? theme::kWhite : tint(box.color)});
   drawing.marks.push_back(Polyline{outline, box.color, 0.8});
   line(at(v.median, -1.0), at(v.median, 1.0), 1.6);
   drawing.marks.push_back(Disc{at(v.rmse, 0.0), 1.5, box.color});
@@ -317,8 +368,10 @@ Chart box_chart(const FigureInput& input, const FigureSize& size) {
       const double place = -static_cast<double>(i);
       names.named_ticks.emplace_back(place, input.runs[i].name);
       const std::vector<double> values = error_values(input.runs[i], error);
-      if (!values.empty())
-        boxes.push_back({box_values(values), place, 0.28, true, chart.legend[i + 1].style.color});
+      if (values.empty()) continue;
+      const BoxValues box = box_values(values);
+      const Color color = chart.legend[i + 1].style.color;
+      boxes.push_back({box, place, 0.14, true, color, violin_of(values, box)});
     }
     chart.panels.push_back(
         box_panel(std::move(boxes), names, title, (count + 0.6) * 2.2 * size.font_size_pt));
@@ -326,7 +379,7 @@ Chart box_chart(const FigureInput& input, const FigureSize& size) {
   add(&eval::PoseError::translation_m, "position error [m]");
   if (has_rotation_errors(input)) add(&eval::PoseError::rotation_deg, "rotation error [deg]");
   drop_truth(chart);
-  chart.note = kBoxNote;
+  chart.note = kViolinNote;
   return chart;
 }
 

@@ -46,8 +46,8 @@ struct FigureInput {
 /// path: plan and side view, to scale; a single estimate is colored by its error. axes: x, y, z over time.
 /// rotation: roll, pitch, yaw (R = Rz(yaw) Ry(pitch) Rx(roll)) over time. error: over time and distance. rpe:
 /// relative errors over five lengths, the longest 20 to 50 % of the path, with 10 segments or more. box, cdf:
-/// distribution of the errors. speed: linear and angular, over 0.2 s. Legends have the numbers of the
-/// evaluations.
+/// distribution of the errors, with their densities between the 5th and 95th percentile. speed: linear and
+/// angular, over 0.2 s. Legends have the numbers of the evaluations.
 /// @throws InputError naming the figure if no estimate has data for it
 [[nodiscard]] Drawing figure(FigureKind kind, const FigureInput& input, const FigureSize& size);
 

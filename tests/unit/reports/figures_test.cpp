@@ -233,6 +233,28 @@ TEST(Figures, NameTheirAxes) {
   EXPECT_TRUE(has(FigureKind::kSpeed, "rotation rate [deg/s]"));
 }
 
+TEST(BoxFigure, HasTheDensityOfTheErrorsBehindTheBoxes) {
+  CircleRuns circles;
+  for (std::size_t i = 0; i < circles.near_errors.per_pose.size(); ++i)
+    circles.near_errors.per_pose[i].translation_m = (i % 2 == 0 ? 0.1 : 0.3) + 1e-4 * static_cast<double>(i);
+  const Drawing drawing = figure(FigureKind::kBox, circles.one(), {});
+  std::vector<double> widths;
+  for (const Mark& mark : drawing.marks) {
+    const auto* const polygon = std::get_if<Polygon>(&mark);
+    if (polygon == nullptr || polygon->points.size() < 20) continue;
+    const std::vector<Point2>& outline = polygon->points;
+    for (std::size_t k = 0; k < outline.size() / 2; ++k)
+      widths.push_back(std::abs(outline[k].y - outline[outline.size() - 1 - k].y));
+    break;  // of positions
+  }
+  ASSERT_GT(widths.size(), 20U);
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  const double largest = std::ranges::max(widths);
+  EXPECT_LT(*middle, 0.5 * largest);  // two modes
+  EXPECT_GT(*std::max_element(widths.begin(), middle), 0.9 * largest);
+  EXPECT_GT(*std::max_element(middle, widths.end()), 0.9 * largest);
+}
+
 TEST(Figures, RefuseRotationsThatCannotBeCompared) {
   CircleRuns circles;
   for (StampedPose& pose : circles.near.poses) pose.T_w_f.q.setIdentity();
