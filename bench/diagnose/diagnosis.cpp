@@ -127,9 +127,26 @@ class Diagnoser {
     ++diagnosis_.trials;
   }
 
+  /// The finished run in place of the trial without changes.
+  /// @throws InputError if it is too short, or its error cannot be measured
+  [[nodiscard]] Trial finished_trial() {
+    if (request_.measure == ErrorMeasure::kInconsistency)
+      throw InputError("RUN",
+                       "has no innovations, which take the place of the error without ground truth; leave it "
+                       "out");
+    request_.part.count = std::min(request_.part.count, options_.finished->summary.frames);
+    if (request_.part.count < kLeastFrames)
+      throw InputError("RUN", fmt::format("has {} frames, a diagnosis requires {}; use a longer run",
+                                          request_.part.count, kLeastFrames));
+    deadline_s_ = options_.budget_s;
+    diagnosis_.finished_run = true;
+    return trial_of(stream_, request_, *options_.finished);
+  }
+
   /// The trial without changes. If it reaches its share of the budget, the part ends there.
   /// @throws InputError if that is too short a part
   [[nodiscard]] Trial first_trial() {
+    if (options_.finished) return finished_trial();
     const double begin_s = elapsed_s();
     Trial trial = run_trial(stream_, request_, {});
     deadline_s_ = options_.budget_s;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,11 @@ struct DiagnosisOptions {
   /// A trial that would end later, by the mean time of those before, is left out, and one that does is
   /// stopped and discarded. If the first trial takes more than a quarter, the part is cut to what it reached.
   double budget_s = 60.0;
-  std::function<double()> elapsed_s{};     ///< of the budget; thread-safe; empty: since the call
-  double length_s = 15.0;                  ///< of the part of the recording, from its start
-  std::function<bool()> stop_requested{};  ///< thread-safe; may be empty
+  std::function<double()> elapsed_s{};  ///< of the budget; thread-safe; empty: since the call
+  /// A finished run of the first frames with the config, in place of the first trial; only with ground truth.
+  std::optional<OdometryRun> finished{};
+  double length_s = 15.0;                                  ///< of the part of the recording, from its start
+  std::function<bool()> stop_requested{};                  ///< thread-safe; may be empty
   std::function<void(const std::string& step)> on_step{};  ///< what is being done; may be empty
 };
 
@@ -37,6 +40,7 @@ struct Diagnosis {
   double corrected = 0.0;     ///< with all corrections that were kept
   double least_effect = 0.1;  ///< relative change of the error that counts: 10 %, or what chance causes
   int trials = 0;
+  bool finished_run = false;  ///< `error` is that of the finished run
   bool interrupted = false;
   std::vector<std::string> left_out;  ///< for lack of budget, one phrase each
   std::vector<Cause> causes;          ///< with an effect, worst first
@@ -44,7 +48,8 @@ struct Diagnosis {
   std::vector<Cause> unmeasured;
 };
 
-/// @throws InputError as `run_odometry`, and for a budget that ends before 30 frames are processed
+/// @throws InputError as `run_odometry`, for a budget that ends before 30 frames are processed, and for a
+/// finished run of fewer frames or without ground truth
 [[nodiscard]] Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options);
 
 /// Only the comparison of the ground truth with the other sensors, by one run without IMU.

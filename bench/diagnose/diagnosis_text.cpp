@@ -27,7 +27,8 @@ std::string title(const Diagnosis& diagnosis) {
                                  diagnosis.seconds, measure, error_text(diagnosis, diagnosis.error));
   if (diagnosis.corrected != diagnosis.error)
     text += fmt::format(", corrected {}", error_text(diagnosis, diagnosis.corrected));
-  return text + fmt::format("; {} trials\n", diagnosis.trials);
+  return text +
+         fmt::format("; {}{} trials\n", diagnosis.finished_run ? "the given run and " : "", diagnosis.trials);
 }
 
 std::string names(const std::vector<Cause>& causes) {
@@ -85,6 +86,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"corrected_error", diagnosis.corrected},
       {"least_effect", diagnosis.least_effect},
       {"trials", diagnosis.trials},
+      {"finished_run", diagnosis.finished_run},
       {"interrupted", diagnosis.interrupted},
       {"left_out", diagnosis.left_out},
       {"causes", list(diagnosis.causes)},

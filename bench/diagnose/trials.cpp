@@ -130,6 +130,18 @@ Trial run_trial(const datasets::SensorStream& stream, const TrialRequest& reques
   return trial;
 }
 
+Trial trial_of(const datasets::SensorStream& stream, const TrialRequest& request, OdometryRun run) {
+  const auto part = corrected_part(stream, request.part, {});
+  const Timestamp last = part->info().frame_times.back();
+  std::erase_if(run.claims, [&](const eval::ClaimedPose& claim) { return claim.t > last; });
+  std::erase_if(run.trajectory.poses, [&](const StampedPose& pose) { return pose.t > last; });
+  std::erase_if(run.frame_counters, [&](const FrameCounters& frame) { return Timestamp{frame.t_ns} > last; });
+  run.summary.frames = std::min(run.summary.frames, request.part.count);
+  Trial trial{.frames = run.summary.frames, .result = score_run(part->info(), std::move(run))};
+  trial.error = error_of(trial.result, request.measure);
+  return trial;
+}
+
 Trajectory visual_trajectory(const datasets::SensorStream& stream, const TrialRequest& request,
                              const std::vector<Correction>& corrections) {
   TrialRequest visual = request;

@@ -21,6 +21,7 @@
 
 #include "bench/config/config_file.h"
 #include "bench/diagnose/correction.h"
+#include "bench/run/odometry_run.h"
 #include "bench/run/run_result.h"
 
 namespace stillpoint::bench {
@@ -45,6 +46,11 @@ struct Trial {
 /// @throws InputError of the first run, e.g. for a config that the data does not suffice for
 [[nodiscard]] Trial run_trial(const datasets::SensorStream& stream, const TrialRequest& request,
                               const std::vector<Correction>& corrections);
+
+/// A finished run of the first frames of the recording as a trial, cut to the part: without a second run.
+/// @param run may lack innovations and the poses of its claims if the measure is `kTruth`
+[[nodiscard]] Trial trial_of(const datasets::SensorStream& stream, const TrialRequest& request,
+                             OdometryRun run);
 
 /// Trajectory of the camera by a run without IMU; empty if it fails.
 [[nodiscard]] Trajectory visual_trajectory(const datasets::SensorStream& stream, const TrialRequest& request,

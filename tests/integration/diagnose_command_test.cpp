@@ -127,6 +127,78 @@ TEST(DiagnoseCommand, TellsAJumpOfTheTruthInItsRow) {
   EXPECT_NE(jump.out.find("ground truth jumps: 1 step(s)"), std::string::npos) << jump.out;
 }
 
+/// A run of the sequence. @return its folder
+fs::path run_of(const fs::path& sequence, const TemporaryFolder& folder,
+                const std::vector<std::string>& more = {}) {
+  const fs::path out = folder.path() / "run";
+  std::vector<std::string> arguments = {"run", sequence.string(), "--out", out.string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const ProgramResult result = run_program(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  return out;
+}
+
+TEST(DiagnoseCommand, TakesAFinishedRunInPlaceOfTheFirstOne) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> fault = {"--fault", "depth_scaled:amount=0.8,start=0,duration=100"};
+  const fs::path run = run_of(rendered_sequence(), folder, fault);
+  const double ate_m =
+      nlohmann::json::parse(std::ifstream(run / "result.json")).at("ate_rmse_m").get<double>();
+  const ProgramResult result =
+      diagnosis_of(rendered_sequence(), {run.string(), "--json", fault[0], fault[1]});
+  ASSERT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_EQ(first_cause(result), "depth_scale") << result.out;
+  const nlohmann::json document = nlohmann::json::parse(result.out);
+  EXPECT_TRUE(document.at("finished_run").get<bool>());
+  EXPECT_NEAR(document.at("error").get<double>(), ate_m, 1e-6 * ate_m);
+}
+
+TEST(DiagnoseCommand, RefusesARunOfAnotherSequenceConfigOrPart) {
+  const TemporaryFolder folder;
+  const fs::path run = run_of(rendered_sequence(), folder, {"--max-frames", "40"});
+  const auto refusal = [&](const fs::path& sequence, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {run.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = diagnosis_of(sequence, arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.out << result.err;
+    return result.err;
+  };
+  EXPECT_NE(
+      refusal(rendered_sequence(), {"--set", "backend.max_iterations=3"}).find("backend.max_iterations = "),
+      std::string::npos);
+  EXPECT_NE(refusal(rendered_sequence(), {"--start", "0.5"}).find("--start"), std::string::npos);
+  EXPECT_NE(refusal(rendered_sequence(), {"--fault", "blank:start=1,duration=1"}).find("--fault"),
+            std::string::npos);
+  const fs::path rig = folder.write("rig.toml", "[depth]\nscale = 1000\n");
+  EXPECT_NE(refusal(rendered_sequence(), {"--rig", rig.string()}).find("another calibration"),
+            std::string::npos);
+  const fs::path other = copy_of_rendered_sequence(folder);
+  scale_columns(other / "d400_gyroscope.txt", 1.001);
+  EXPECT_NE(refusal(other, {}).find("other files"), std::string::npos);
+  fs::remove(run / "status.csv");
+  EXPECT_NE(refusal(rendered_sequence(), {}).find("status.csv"), std::string::npos);
+}
+
+TEST(DiagnoseCommand, TakesAStoredRun) {
+  const TemporaryFolder folder;
+  folder.write("one.toml",
+               "title = \"One run\"\nbase = \"stillpoint\"\nvariants = [\"stillpoint\"]\n"
+               "seeds = [1]\n[recorded]\nsequences = [\"" +
+                   rendered_sequence().string() + "\"]\n");
+  const std::string store = (folder.path() / "store.sqlite").string();
+  const ProgramResult bench = run_program({"bench", (folder.path() / "one.toml").string(), "--store", store});
+  ASSERT_EQ(bench.exit_code, 0) << bench.out << bench.err;
+  const ProgramResult list = run_program({"store", "list", store});
+  const std::string key = list.out.substr(0, list.out.find(' '));
+  const ProgramResult result =
+      diagnosis_of(rendered_sequence(), {key.substr(0, 8), "--store", store, "--budget", "20s"});
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("the given run and"), std::string::npos) << result.out;
+  const ProgramResult unknown = diagnosis_of(rendered_sequence(), {"ffffffff", "--store", store});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("store list"), std::string::npos) << unknown.err;
+}
+
 TEST(DiagnoseCommand, NamesTheProblemOfABudgetWithoutUnit) {
   const ProgramResult result = diagnosis_of(rendered_sequence(), {"--budget", "60"});
   EXPECT_EQ(result.exit_code, 2);

@@ -4,10 +4,8 @@
 #include <iostream>
 #include <memory>
 #include <set>
-#include <span>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "bench/analysis/commit_history.h"
 #include "bench/cli/command_line.h"
@@ -15,6 +13,7 @@
 #include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
 #include "bench/record/output_folder.h"
+#include "bench/store/find_run.h"
 #include "bench/store/maintenance/maintenance.h"
 #include "bench/store/maintenance/salvage.h"
 #include "bench/store/maintenance/store_export.h"
@@ -25,8 +24,6 @@
 
 namespace stillpoint::bench {
 namespace {
-
-constexpr std::size_t kListedCandidates = 5;
 
 /// Adds the store and the action to a command. With other arguments, the store is an option only.
 /// @param arguments target of the options; must have a member `store`
@@ -164,24 +161,6 @@ int list(const StoreArguments& arguments) {
     std::cout << fmt::format("plan {}: {} runs\n", plan.name, plan.run_keys.size());
   }
   return kExitOk;
-}
-
-/// @param key complete key or a prefix of it
-/// @throws InputError if no run or several runs have the prefix
-StoredRun find_run(const Store& store, const std::string& key) {
-  std::vector<StoredRun> found = store.runs();
-  std::erase_if(found, [&](const StoredRun& run) { return !run.key.starts_with(key); });
-  if (found.size() == 1) return found.front();
-  if (found.size() > 1) {
-    std::vector<std::string> candidates;
-    for (const StoredRun& run : std::span(found).first(std::min(found.size(), kListedCandidates)))
-      candidates.push_back(fmt::format("{} ({} {})", run.key, run.identity.sequence, run.identity.variant));
-    throw InputError("run \"" + key + "\"", fmt::format("is the beginning of {} keys; use a longer one: {}{}",
-                                                        found.size(), fmt::join(candidates, ", "),
-                                                        found.size() > kListedCandidates ? ", ..." : ""));
-  }
-  throw InputError("run \"" + key + "\"",
-                   "not found in " + store.file().string() + "; see `stillpoint store list`");
 }
 
 int show(const StoreArguments& arguments) {

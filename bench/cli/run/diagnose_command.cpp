@@ -16,6 +16,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
+#include "bench/cli/run/finished_run.h"
 #include "bench/cli/run/profile_report.h"
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/diagnose/diagnosis.h"
@@ -28,7 +29,7 @@ namespace stillpoint::bench {
 namespace {
 
 struct DiagnoseArguments {
-  std::string sequence, format, rig, base = "stillpoint", variant, budget = "60s";
+  std::string sequence, run, store, format, rig, base = "stillpoint", variant, budget = "60s";
   std::vector<std::string> settings, topics, faults;
   double start_s = 0.0, length_s = 15.0;
   bool json = false, truth = false;
@@ -57,14 +58,27 @@ std::unique_ptr<datasets::SensorStream> open_recording(const DiagnoseArguments& 
   return played(std::move(stream), {.start_s = arguments.start_s, .faults = parsed_faults(arguments.faults)});
 }
 
+/// The run of the arguments; nullopt without one.
+std::optional<OdometryRun> finished_run(const DiagnoseArguments& arguments,
+                                        const datasets::SequenceInfo& info) {
+  if (arguments.run.empty()) return std::nullopt;
+  // Not in the braces below: g++ 12 destroys members of an aggregate twice if an initializer throws.
+  const OdometryConfig config = load_config(config_of(arguments, info));
+  const std::vector<datasets::SensorFault> faults = parsed_faults(arguments.faults);
+  return read_finished_run({arguments.run, arguments.store},
+                           {.info = info, .config = config, .faults = faults, .rig_file = arguments.rig});
+}
+
 /// @param start of the budget: opening a recording counts
 DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::SequenceInfo& info,
                             std::chrono::steady_clock::time_point start) {
+  std::optional<OdometryRun> finished = finished_run(arguments, info);  // may throw
   return {
       .config = config_of(arguments, info),
       .budget_s = parse_duration_s(arguments.budget, "--budget"),
       .elapsed_s =
           [start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); },
+      .finished = std::move(finished),
       .length_s = arguments.length_s,
       .stop_requested = interrupt_requested,
       .on_step = [](const std::string& step) { spdlog::debug("{}", step); }};
@@ -133,6 +147,10 @@ int check_truths(const DiagnoseArguments& arguments) {
 int diagnose_sequence(const DiagnoseArguments& arguments) {
   static_cast<void>(parse_duration_s(arguments.budget, "--budget"));
   install_interrupt_handlers();
+  if (arguments.run.empty() && !arguments.store.empty())
+    throw InputError("--store", "requires SEQ and the key of a run; see `stillpoint store list`");
+  if (arguments.truth && !arguments.run.empty())
+    throw InputError("--truth", "compares the ground truth with a run without IMU of its own; leave RUN out");
   if (arguments.truth) return check_truths(arguments);
   if (arguments.sequence.empty())
     throw InputError("SEQ", "is missing; only --truth works on all registered sequences");
@@ -158,6 +176,12 @@ Command diagnose_command() {
             .help = "Sequence folder, bag or preset name; with --truth [all registered sequences]",
             .target = &a->sequence,
             .may_be_omitted = true},
+           {.name = "RUN",
+            .help = "Finished run of SEQ, in place of the first one: output folder of `run`, or a key with "
+                    "--store",
+            .target = &a->run,
+            .may_be_omitted = true},
+           {"--store", "Store that contains RUN", &a->store},
            {"--budget", "Time for the whole diagnosis, such as 30s or 2m", &a->budget},
            {"--length", "Length of the part of the recording that is used [15 s]", &a->length_s, {2, 1e4}},
            {"--start", "Time after the first frame at which that part begins [0 s]", &a->start_s, {0, 1e9}},

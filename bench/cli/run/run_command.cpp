@@ -27,7 +27,6 @@
 #include "bench/record/map_file.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/run_files.h"
-#include "bench/record/sequence_checksum.h"
 #include "bench/run/frame_cache.h"
 #include "bench/run/odometry_run.h"
 #include "bench/run/rig_report.h"
@@ -234,11 +233,10 @@ class RunWatch {
   std::size_t resets_ = 0;
 };
 
-/// --sequence-id, the identity of a preset, or the checksum of the sequence.
+/// --sequence-id, or as `sequence_identity`; empty if interrupted.
 std::string id_of(const datasets::SequenceInfo& info, const RunArguments& arguments) {
   if (interrupt_requested()) return "";
-  if (!arguments.sequence_id.empty()) return arguments.sequence_id;
-  return info.id.empty() ? remembered_checksum(info.folder, checksum_folder()) : info.id;
+  return arguments.sequence_id.empty() ? sequence_identity(info, arguments.rig) : arguments.sequence_id;
 }
 
 RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& arguments,

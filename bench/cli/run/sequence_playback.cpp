@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "bench/cli/console.h"
+#include "bench/record/sequence_checksum.h"
 #include "bench/run/frame_cache.h"
 #include "bench/run/sequence_source.h"
 #include "datasets/faults/faulty_stream.h"
@@ -65,6 +66,12 @@ std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorS
   if (playback.passes > 1) stream = datasets::ping_pong_playback(std::move(stream), playback.passes);
   stream = datasets::with_gray_noise(std::move(stream), playback.gray_noise);
   return datasets::with_faults(std::move(stream), playback.faults);
+}
+
+std::string sequence_identity(const datasets::SequenceInfo& info, const std::string& rig_file) {
+  std::string id = info.id.empty() ? remembered_checksum(info.folder, checksum_folder()) : info.id;
+  if (!rig_file.empty()) id.append(kRigSuffix).append(sequence_checksum(rig_file));
+  return id;
 }
 
 std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/run/sequence_source.h"
@@ -47,6 +48,15 @@ struct Playback {
 /// @throws InputError as `start_at`, `every_nth_frame`, `ping_pong_playback` and `with_faults`
 [[nodiscard]] std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
                                                              const Playback& playback);
+
+/// Follows the identity of the files if their calibration is overridden; then its checksum follows.
+inline constexpr std::string_view kRigSuffix = "-rig-";
+
+/// Identity of a sequence in manifests: that of a preset, or the checksum of the files; with another
+/// calibration it is another sequence.
+/// @param rig_file of --rig; empty without one
+/// @throws InputError as `sequence_checksum`
+[[nodiscard]] std::string sequence_identity(const datasets::SequenceInfo& info, const std::string& rig_file);
 
 /// Options of the frame cache whose warnings are logged.
 /// @param max_frames 0 = all
