@@ -28,6 +28,16 @@
     return run.outcome === "ok" && found ? found[1] : null;
   }
 
+  // The median of a cell with all of its digits: that of the runs, of which equal ones count once, if it is the one
+  // that the cell shows; else the shown number.
+  function medianOf(cell, runs, metric) {
+    const shown = numberOf(cell), values = [...new Set(runs.map((run) => valueOf(run, metric)).filter((value) => value !== null))].sort((a, b) => a - b);
+    if (shown === null || !values.length) return shown;
+    const median = (values[Math.floor((values.length - 1) / 2)] + values[Math.floor(values.length / 2)]) / 2;
+    const decimals = (/\.(\d+)/.exec(textOf(cell)) || ["", ""])[1].length;
+    return Math.abs(median - shown) <= 0.51 * 10 ** -decimals ? median : shown;
+  }
+
   // Dots of the runs of a cell on the scale of its sequence; failed runs are crosses at the right edge.
   function strip(runs, metric, low, high, median) {
     const at = (value) => MARGIN + (high > low ? (value - low) / (high - low) : 0.5) * (WIDTH - 4 * MARGIN);
@@ -36,7 +46,7 @@
     const add = (tag, attributes) => { const part = document.createElementNS(space, tag); for (const [name, value] of Object.entries(attributes)) part.setAttribute(name, value); svg.append(part); };
     for (const [name, value] of Object.entries({ width: WIDTH, height: HEIGHT, viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "dots", "aria-hidden": "true" })) svg.setAttribute(name, value);
     add("line", { x1: MARGIN, x2: WIDTH - 3 * MARGIN, y1: HEIGHT / 2, y2: HEIGHT / 2 });
-    if (median !== null) add("line", { x1: at(median), x2: at(median), y1: 1, y2: HEIGHT - 1, class: "median" });
+    if (median !== null) add("line", { x1: at(median).toFixed(1), x2: at(median).toFixed(1), y1: 1, y2: HEIGHT - 1, class: "median" });
     for (const run of runs) {
       const value = valueOf(run, metric);
       if (value !== null) add("circle", { cx: at(value).toFixed(1), cy: HEIGHT / 2, r: 3 });
@@ -51,7 +61,7 @@
       const lists = own.rows.map((row) => keysOf(row.cells[column]).map((key) => runs.get(key)).filter((run) => run));
       const values = lists.flat().map((run) => valueOf(run, own.metric)).filter((value) => value !== null);
       const low = Math.min(...values), high = Math.max(...values);
-      own.rows.forEach((row, i) => { if (lists[i].length) row.cells[column].append(strip(lists[i], own.metric, low, high, numberOf(row.cells[column]))); });
+      own.rows.forEach((row, i) => { if (lists[i].length) row.cells[column].append(strip(lists[i], own.metric, low, high, medianOf(row.cells[column], lists[i], own.metric))); });
     });
   }
 

@@ -32,6 +32,9 @@ await test("the results are a matrix with a dot per run, sorted, filtered, and c
   const before = await rows();
   const dots = await page.$$eval("#table-ate_rmse_m td", (cells) => cells.map((cell) => [cell.querySelectorAll("circle, .failed").length, (cell.querySelector("a[data-runs]")?.dataset.runs ?? "").split(" ").filter((key) => key).length]));
   for (const [drawn, runs] of dots) assert.equal(drawn, runs);
+  const single = await page.$$eval("#table-ate_rmse_m td", (cells) => cells.filter((cell) => cell.querySelectorAll("circle").length === 1).map((cell) => [cell.querySelector("circle").getAttribute("cx"), cell.querySelector(".median").getAttribute("x1")]));
+  assert.ok(single.length > 0);
+  for (const [dot, median] of single) assert.equal(median, dot, "the median of one run is that run");
   for (const direction of [1, -1]) {
     await page.locator("#table-ate_rmse_m .sort").first().press("Enter");
     const numbers = (await rows()).map((row) => direction * parseFloat(row[1])).filter(Number.isFinite);
