@@ -24,6 +24,7 @@ struct Cause {
   /// Of the frames concerned, where it cannot be undone: the error outside of them is compared with that of
   /// all.
   std::vector<Timestamp> times{};
+  bool observed = false;       ///< the data itself shows it, e.g. blank frames; else inferred by comparison
   double largest_ratio = 0.9;  ///< `error_ratio` up to which the effect counts
   bool consistent = true;      ///< whether all runs show the effect
   /// Error with the correction, or outside of the frames, to that as it is.

@@ -67,6 +67,7 @@ class Diagnoser {
       if (!find_next(round)) break;
     }
     std::ranges::stable_sort(diagnosis_.causes, {}, [](const Cause& cause) { return *cause.error_ratio; });
+    rank_harmless(diagnosis_.harmless);
     diagnosis_.frames = request_.part.count;
     diagnosis_.seconds = part_s();
     const auto waiting = std::ranges::count_if(
@@ -300,6 +301,11 @@ class Diagnoser {
 };
 
 }  // namespace
+
+void rank_harmless(std::vector<Cause>& causes) {
+  std::ranges::stable_sort(
+      causes, {}, [](const Cause& cause) { return cause.observed ? 0.0 : cause.error_ratio.value_or(1.0); });
+}
 
 Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options) {
   return Diagnoser(stream, options).finish();

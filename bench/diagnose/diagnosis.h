@@ -48,6 +48,10 @@ struct Diagnosis {
   std::vector<Cause> unmeasured;
 };
 
+/// Orders causes without an effect: first those that the data itself shows, as they are; then inferred ones,
+/// by the error with their correction, which refutes one that does not reduce it.
+void rank_harmless(std::vector<Cause>& causes);
+
 /// @throws InputError as `run_odometry`, for a budget that ends before 30 frames are processed, and for a
 /// finished run of fewer frames or without ground truth
 [[nodiscard]] Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options);

@@ -55,6 +55,7 @@ class FrameCauses {
     }
     if (cause.times.size() < kLeastConcerned) return;
     const auto count = static_cast<double>(cause.times.size());
+    cause.observed = true;
     cause.strength = 10.0 * count / static_cast<double>(survey_.frames.size());
     cause.evidence = fmt::format("{} of {} frames {}", count, survey_.frames.size(), cause.evidence);
     causes_.push_back(std::move(cause));
@@ -177,6 +178,7 @@ std::vector<Cause> dropped_frames(const std::vector<Timestamp>& times) {
   cause.evidence =
       fmt::format("{:.0f} of {:.0f} frames, the longest gap is {:.2f} s", missing,
                   missing + static_cast<double>(times.size()), *std::ranges::max_element(intervals));
+  cause.observed = true;
   cause.strength = 10.0 * ratio;
   return {cause};
 }
@@ -200,11 +202,14 @@ std::vector<Cause> rounded_stamps(const std::vector<Timestamp>& times) {
                                      unit_ns / 1'000'000, 1e3 * interval_s),
              .remedy = "write stamps with at least four decimals",
              .strength = 100.0,
-             .correction = Correction{.change = [interval_s](auto& changed) {
-               const Timestamp first = changed.frame_times.front();
-               for (std::size_t i = 0; i < changed.frame_times.size(); ++i)
-                 changed.frame_times[i] = after(first, static_cast<double>(i) * interval_s);
-             }}}};
+             .correction = Correction{.change =
+                                          [interval_s](auto& changed) {
+                                            const Timestamp first = changed.frame_times.front();
+                                            for (std::size_t i = 0; i < changed.frame_times.size(); ++i)
+                                              changed.frame_times[i] =
+                                                  after(first, static_cast<double>(i) * interval_s);
+                                          }},
+             .observed = true}};
   }
   return {};
 }

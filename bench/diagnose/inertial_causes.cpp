@@ -238,7 +238,8 @@ Cause sample_cause(const std::string& id, const std::string& name, const std::st
           .evidence = evidence,
           .remedy = "record again with another rate or range; `--variant vo` is without IMU",
           .strength = strength,
-          .correction = Correction{.settings = {"imu.enabled=false"}}};
+          .correction = Correction{.settings = {"imu.enabled=false"}},
+          .observed = true};
 }
 
 /// Samples during the frames.

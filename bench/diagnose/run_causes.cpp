@@ -151,7 +151,8 @@ std::vector<Cause> box_causes(const datasets::SequenceInfo& info) {
   std::vector<Cause> causes;
   Cause missing{.id = "boxes_missing",
                 .name = "boxes missing",
-                .remedy = "`stillpoint detect SEQ --out SEQ/detections.txt`, with all frames"};
+                .remedy = "`stillpoint detect SEQ --out SEQ/detections.txt`, with all frames",
+                .observed = true};
   double boxed = 0.0, boxes = 0.0;
   for (const Timestamp t : info.frame_times) {
     const DetectionSet* const set = set_at(info, t);
@@ -195,7 +196,8 @@ std::vector<Cause> feature_causes(const OdometryRun& run, const datasets::Sequen
                       .name = "few features",
                       .evidence = fmt::format("{:.0f} per frame in the mean", tracked / frames),
                       .remedy = "aim at textured, lit surfaces; check focus and exposure",
-                      .strength = kFewFeatures * frames / std::max(1.0, tracked)});
+                      .strength = kFewFeatures * frames / std::max(1.0, tracked),
+                      .observed = true});
   if (info.detections.empty() && dynamic > kManyDynamic * tracked)
     causes.push_back({.id = "boxes_missing",
                       .name = "boxes missing",

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "bench/diagnose/diagnosis.h"
 #include "bench/diagnose/image_causes.h"
 #include "bench/diagnose/inertial_causes.h"
 #include "bench/diagnose/truth_report.h"
@@ -94,6 +96,23 @@ TEST(InertialCauses, TellGapsAndClippedSamples) {
   const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
   EXPECT_TRUE(cause_named(causes, "imu_gap"));
   EXPECT_TRUE(cause_named(causes, "gyro_saturated"));
+}
+
+/// On market, blank frames came after noise of the IMU whose correction had increased the error.
+TEST(HarmlessCauses, BeginWithWhatTheDataShows) {
+  TurningRig rig({});
+  for (std::size_t i = 20; i < 25; ++i) rig.survey.frames[i].deviation_gray = 0.0;
+  std::vector<Cause> causes = {{.id = "imu_noise", .strength = 5.0, .error_ratio = 1.2},
+                               {.id = "clock_drift", .strength = 4.0, .error_ratio = 0.95}};
+  for (Cause& blank : image_causes(rig.info, rig.survey)) {
+    blank.error_ratio = 1.02;
+    causes.push_back(std::move(blank));
+  }
+  rank_harmless(causes);
+  ASSERT_EQ(causes.size(), 3U);
+  EXPECT_EQ(causes[0].id, "blank");
+  EXPECT_EQ(causes[1].id, "clock_drift");
+  EXPECT_EQ(causes[2].id, "imu_noise");
 }
 
 TEST(ImageCauses, AreAbsentForSoundImages) {
