@@ -145,6 +145,7 @@ row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catal
 row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan bench/run \
   bench/plan/execution bench/analysis bench/analysis/search \
   bench/executors bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard reports/live
+row bench/cli/stats $execution eval/metrics bench/store bench/systems bench/plan bench/analysis reports/tables
 row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
 
 # The minimal build: its commands, and the functions that it does not have.

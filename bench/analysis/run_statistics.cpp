@@ -302,6 +302,7 @@ std::vector<RepetitionRow> repetition_report(const Store& store, std::span<const
     const RunIdentity& identity = repeated.front()->identity;
     RepetitionRow row{
         .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed),
+        .identity = identity,
         .repetitions = repeated.size()};
     std::set<std::string> trajectories;
     const StoredRun* first = nullptr;
@@ -348,7 +349,8 @@ ExecutionDifference difference(const Store& store, const StoredRun& run, const S
                                const StoredRun& counterpart) {
   const RunIdentity& identity = run.identity;
   ExecutionDifference row{
-      .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed)};
+      .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed),
+      .identity = identity};
   if (run.outcome != Outcome::kOk || counterpart.outcome != Outcome::kOk) {
     row.failure = outcome_name(run.outcome) + ", other " + outcome_name(counterpart.outcome);
     return row;

@@ -66,7 +66,8 @@ struct AblationRow {
 
 /// Repeatability of one run.
 struct RepetitionRow {
-  std::string label;  ///< sequence, variant, seed
+  std::string label;     ///< sequence, variant, seed
+  RunIdentity identity;  ///< of the first repetition
   std::size_t repetitions = 0;
   std::size_t failed = 0;  ///< repetitions that did not succeed
   std::size_t distinct_trajectories =
@@ -99,6 +100,7 @@ struct StageDifference {
 /// Differences between two executions of the same run.
 struct ExecutionDifference {
   std::string label;                    ///< sequence, variant, seed
+  RunIdentity identity;                 ///< in the first store
   std::string failure;                  ///< "crashed, other ok" if one did not succeed, which is all then
   std::size_t frames = 0;               ///< that both executed
   std::vector<StageDifference> stages;  ///< in the order of execution; empty if not recorded

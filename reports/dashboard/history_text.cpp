@@ -396,7 +396,7 @@ std::string regressions_markdown(const bench::CommitHistory& history, const benc
 }
 
 std::string regressions_json(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
-  Json json = {{"open", Json::array()}, {"drifting", Json::array()}};
+  Json json = {{"schema", 1}, {"open", Json::array()}, {"drifting", Json::array()}};
   for (const ShiftGroup& group : grouped_shifts(history, changes, bench::ChangeState::kOpen)) {
     for (const bench::LevelShift* shift : group.shifts)
       json["open"].push_back(regression_json(history, *shift));

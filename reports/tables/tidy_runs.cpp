@@ -2,13 +2,11 @@
 #include "reports/tables/tidy_runs.h"
 
 #include <array>
-#include <iterator>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "bench/model/metrics.h"
-#include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
 namespace {
@@ -18,17 +16,19 @@ constexpr std::array kColumns = {
     "started",    "machine", "mode",     "kind",     "cores",       "seed",        "repetition", "axis",
     "axis_value", "outcome", "protocol", "metric",   "unit",        "better",      "value"};
 
-/// The columns that all rows of a run share, each followed by a comma.
-std::string run_columns(const bench::StoredRun& run) {
+/// The values that all rows of a run share, in the first columns.
+DataRow run_values(const bench::StoredRun& run) {
   const bench::RunIdentity& id = run.identity;
-  std::string text;
-  for (const std::string_view part : std::initializer_list<std::string_view>{
-           run.key, id.system, id.variant, id.sequence, id.sequence_id, id.config_hash, id.build,
-           run.committed, run.started, run.machine, id.mode, id.kind, id.cores})
-    text += csv_field(part) + ',';
-  fmt::format_to(std::back_inserter(text), "{},{},{},", id.seed, id.repetition, csv_field(id.axis));
-  if (!id.axis.empty()) fmt::format_to(std::back_inserter(text), "{}", id.axis_value);
-  return text + ',' + bench::outcome_name(run.outcome) + ',';
+  DataRow values;
+  for (const std::string& text :
+       {run.key, id.system, id.variant, id.sequence, id.sequence_id, id.config_hash, id.build, run.committed,
+        run.started, run.machine, id.mode, id.kind, id.cores})
+    values.push_back(data_value(text));
+  const DataRow more = {id.seed, id.repetition, data_value(id.axis),
+                        id.axis.empty() ? DataValue() : DataValue(id.axis_value),
+                        bench::outcome_name(run.outcome)};
+  values.insert(values.end(), more.begin(), more.end());
+  return values;
 }
 
 std::string_view better_of(const std::string& metric) {
@@ -37,22 +37,24 @@ std::string_view better_of(const std::string& metric) {
   return known->direction == bench::MetricDirection::kSmallerIsBetter ? "smaller" : "larger";
 }
 
-void add_row(const std::string& columns, const bench::Metric& metric, std::string_view better,
-             std::string& text) {
-  fmt::format_to(std::back_inserter(text), "{}{},{},{},{},{}\n", columns, csv_field(metric.protocol),
-                 csv_field(metric.name), csv_field(metric.unit), better, metric.value);
+DataRow metric_row(DataRow values, const bench::Metric& metric, std::string_view better) {
+  const DataRow more = {data_value(metric.protocol), metric.name, data_value(metric.unit),
+                        data_value(std::string(better)), metric.value};
+  values.insert(values.end(), more.begin(), more.end());
+  return values;
 }
 
-void add_run(const bench::StoredRun& run, std::string& text) {
-  const std::string columns = run_columns(run);
+void add_run(const bench::StoredRun& run, std::vector<DataRow>& rows) {
+  const DataRow values = run_values(run);
   const double succeeded = run.outcome == bench::Outcome::kOk ? 1.0 : 0.0;
-  add_row(columns, {.name = "succeeded", .value = succeeded}, "larger", text);
-  for (const bench::Metric& metric : run.metrics) add_row(columns, metric, better_of(metric.name), text);
+  rows.push_back(metric_row(values, {.name = "succeeded", .value = succeeded}, "larger"));
+  for (const bench::Metric& metric : run.metrics)
+    rows.push_back(metric_row(values, metric, better_of(metric.name)));
   for (const bench::ModuleCost& cost : run.costs) {
     const auto add = [&](std::string_view statistic, double ms) {
       const std::string name = fmt::format("{}/{}", statistic, cost.module);
-      add_row(columns, {.name = name, .protocol = "per " + cost.per, .unit = "ms", .value = ms}, "smaller",
-              text);
+      rows.push_back(metric_row(
+          values, {.name = name, .protocol = "per " + cost.per, .unit = "ms", .value = ms}, "smaller"));
     };
     add("mean_ms", cost.mean_ms);
     add("median_ms", cost.median_ms);
@@ -65,9 +67,16 @@ void add_run(const bench::StoredRun& run, std::string& text) {
 
 std::string tidy_header() { return fmt::format("{}", fmt::join(kColumns, ",")); }
 
+DataTable tidy_table(std::span<const bench::StoredRun> runs) {
+  DataTable table{
+      .kind = "store_runs", .columns = {kColumns.begin(), kColumns.end()}, .rows = {}, .notes = {}};
+  for (const bench::StoredRun& run : runs) add_run(run, table.rows);
+  return table;
+}
+
 std::string tidy_text(std::span<const bench::StoredRun> runs) {
   std::string text = tidy_header() + '\n';
-  for (const bench::StoredRun& run : runs) add_run(run, text);
+  for (const bench::StoredRun& run : runs) text += data_rows_csv(tidy_table(std::span(&run, 1)).rows);
   return text;
 }
 

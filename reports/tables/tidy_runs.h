@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bench/model/stored_run.h"
+#include "reports/tables/data_table.h"
 
 namespace stillpoint::report {
 
@@ -18,5 +19,8 @@ namespace stillpoint::report {
 /// the metric "succeeded", 1 or 0, so that a failed run, which may have no other, is not missing from the
 /// table; and the mean, median, 95th percentile and maximum of each timed module, as "median_ms/MODULE".
 [[nodiscard]] std::string tidy_text(std::span<const bench::StoredRun> runs);
+
+/// The same rows with typed values; of few runs, as it needs a kilobyte per row.
+[[nodiscard]] DataTable tidy_table(std::span<const bench::StoredRun> runs);
 
 }  // namespace stillpoint::report

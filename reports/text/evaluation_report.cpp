@@ -367,7 +367,7 @@ Json comparison_json(const eval::Comparison& comparison) {
 }
 
 Json openloris_json(const eval::OpenlorisEvaluation& evaluation) {
-  Json json = Json::object();
+  Json json = {{"schema", 1}};
   for (const auto& [system, scenes] : evaluation.benchmark.systems) {
     for (const auto& [name, scene] : scenes) json["systems"][system][name] = scene_json(scene);
   }

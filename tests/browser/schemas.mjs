@@ -41,6 +41,12 @@ for (const name of names) {
     ++documents;
     // The schema notices a member that is added or renamed, and another version.
     assert.ok(!isValid({ ...output, added: 1 }), `${file} with another member`);
+    // Of a table, a column.
+    for (const [column, value] of Object.entries(output.kind ? (output.rows[0] ?? {}) : {})) {
+      const { [column]: removed, ...rest } = output.rows[0];
+      assert.ok(!isValid({ ...output, rows: [rest] }), `${file} without ${column}`);
+      assert.ok(!isValid({ ...output, rows: [{ ...rest, [`${column}_`]: value }] }), `${file} with another name of ${column}`);
+    }
     const key = "stillpoint_store" in output ? "stillpoint_store" : "schema";
     assert.ok(!isValid({ ...output, [key]: output[key] + 1 }), `${file} of another version`);
     for (const required of schema.required ?? ["schema"]) {

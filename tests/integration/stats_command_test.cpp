@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint stats`: selection of runs, number of values, and missing intervals.
+#include <cmath>
 #include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/store/store_writer.h"
 #include "tests/support/program.h"
@@ -82,13 +84,14 @@ TEST_F(StatsCommand, NamesRelativeErrorsOfFewPairs) {
 
 TEST_F(StatsCommand, ShowsAllBuildsInSeparateRows) {
   fill(6);
-  const ProgramResult result = stats({"summary", "--build", "all", "--csv"});
+  const ProgramResult result = stats({"summary", "--build", "all", "--format", "csv"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(
       result.out.substr(0, result.out.find('\n')),
-      "build,machine,mode,sequence,variant,sweep,runs,failed,n,median,median 95 %,quartiles,worst,modes");
-  EXPECT_NE(result.out.find("0.0101 to 0.0106"), std::string::npos) << result.out;  // all six values
-  EXPECT_NE(result.out.find("0.1001 to 0.1006"), std::string::npos) << result.out;
+      "build,machine,mode,sequence,variant,axis,axis_value,metric,unit,runs,failed,without_value,copies,n,"
+      "median,median_low,median_high,quartile_low,quartile_high,worst,modes,doubt");
+  EXPECT_NE(result.out.find(",0.0101,0.0106,"), std::string::npos) << result.out;  // all six values
+  EXPECT_NE(result.out.find(",0.2001,0.2006,"), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("Left out"), std::string::npos);
   EXPECT_NE(stats({"summary", "--build", "old"}).out.find("build: older"), std::string::npos);
   expect_rejected(stats({"summary", "--build", "x"}), {"--build", "\"x\"", "newer, older"});
@@ -96,13 +99,49 @@ TEST_F(StatsCommand, ShowsAllBuildsInSeparateRows) {
 
 TEST_F(StatsCommand, AblationHasTheBaseOfThePlan) {
   fill(6);
-  const ProgramResult result = stats({"ablation", "--csv"});
+  const ProgramResult result = stats({"ablation"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   // Differences of 0.01 in all six pairs.
-  EXPECT_NE(result.out.find("vo,wo,(all),6,0,0.01,0.01 to 0.01,+1.00"), std::string::npos) << result.out;
-  EXPECT_EQ(result.out.find("older"), std::string::npos) << result.out;
-  const std::string reversed = stats({"ablation", "--csv", "--base", "wo"}).out;
-  EXPECT_NE(reversed.find("wo,vo,(all),6,0,-0.01,-0.01 to -0.01,-1.00"), std::string::npos) << reversed;
+  EXPECT_NE(
+      result.out.find("| vo   | wo      | (all)    | 6   | 0            | 0.01       | 0.01 to 0.01  |"),
+      std::string::npos)
+      << result.out;
+  EXPECT_NE(result.out.find("build: newer"), std::string::npos) << result.out;
+  const std::string reversed = stats({"ablation", "--base", "wo"}).out;
+  EXPECT_NE(reversed.find("| -0.01 to -0.01 | -1.00"), std::string::npos) << reversed;
+}
+
+TEST_F(StatsCommand, TablesForProgramsHaveNumbers) {
+  fill(6);
+  const ProgramResult result = stats({"ablation", "--format", "json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json table = nlohmann::json::parse(result.out);
+  EXPECT_EQ(table.at("kind"), "stats_ablation");
+  EXPECT_EQ(table.at("schema"), 1);
+  const nlohmann::json& row = table.at("rows").at(0);
+  EXPECT_EQ(row.at("build"), "newer");
+  EXPECT_EQ(row.at("variant"), "wo");
+  EXPECT_EQ(row.at("unit"), "m");
+  EXPECT_EQ(row.at("n"), 6);
+  EXPECT_EQ(row.at("p"), 0.03125);  // 2 / 2^6: all six signs are equal
+  EXPECT_NEAR(row.at("difference_low"), 0.01, 1e-12);
+  EXPECT_NEAR(row.at("difference_high"), 0.01, 1e-12);
+  // 0.0201 / 0.0101 to 0.0206 / 0.0106
+  EXPECT_NEAR(row.at("relative_high"), 0.0201 / 0.0101 - 1.0, 1e-12);
+  EXPECT_NEAR(row.at("relative_low"), 0.0206 / 0.0106 - 1.0, 1e-12);
+  EXPECT_FALSE(table.at("notes").empty());
+}
+
+TEST_F(StatsCommand, AnIntervalThatTooFewRunsSupportIsNull) {
+  fill(3);
+  const nlohmann::json rows = nlohmann::json::parse(stats({"--format", "json"}).out).at("rows");
+  EXPECT_EQ(rows.at(0).at("median"), 0.0102);
+  EXPECT_TRUE(rows.at(0).at("median_low").is_null());
+}
+
+TEST_F(StatsCommand, RejectsAnUnknownFormat) {
+  fill(1);
+  expect_rejected(stats({"--format", "yaml"}), {"--format", "\"yaml\"", "table, csv, json"});
 }
 
 TEST_F(StatsCommand, AblationWithoutABaseListsTheVariants) {
@@ -126,6 +165,13 @@ TEST_F(StatsCommand, FindsTheRunsOfAFaultPlanFileByItsName) {
   const ProgramResult result = stats({"faults", "--plan", (folder_.path() / "my_faults.toml").string()});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("survive, 0.005 m, 0.0 %"), std::string::npos) << result.out;
+  const std::string json =
+      stats({"faults", "--plan", (folder_.path() / "my_faults.toml").string(), "--format", "json"}).out;
+  const nlohmann::json row = nlohmann::json::parse(json).at("rows").at(0);
+  EXPECT_EQ(row.at("result"), "survive");
+  EXPECT_EQ(row.at("as_expected"), true);
+  EXPECT_EQ(row.at("error_after_recovery_m"), 0.005);
+  EXPECT_TRUE(row.at("time_to_detect_s").is_null());
 }
 
 TEST_F(StatsCommand, ImperfectionsAreGeometricMeansOverSequences) {
@@ -151,10 +197,19 @@ TEST_F(StatsCommand, ImperfectionsAreGeometricMeansOverSequences) {
     plan.run_keys.push_back(bench::run_key(lost));
   }
   writer.record_plan(plan);
-  const std::string table = stats({"imperfections", "--plan", "rigs", "--csv"}).out;
   // sqrt(0.02 * 0.16) = 0.056569, sqrt(2 * 4) = 2.8284
-  EXPECT_NE(table.find("rig:seed=1,vo,2,0,0.056569,2.8284,0.16,3.00 %"), std::string::npos) << table;
-  EXPECT_NE(table.find("(all),vo,4,2,0.056569,2.8284,0.16,3.00 %"), std::string::npos) << table;
+  const std::string table = stats({"imperfections", "--plan", "rigs"}).out;
+  EXPECT_NE(table.find("| 0.056569 | 2.8284 | 0.16        | 3.00 %"), std::string::npos) << table;
+  const nlohmann::json rows =
+      nlohmann::json::parse(stats({"imperfections", "--plan", "rigs", "--format", "json"}).out).at("rows");
+  const nlohmann::json& all = rows.back();
+  EXPECT_EQ(all.at("fault"), "(all)");
+  EXPECT_EQ(all.at("runs"), 4);
+  EXPECT_EQ(all.at("lost"), 2);
+  EXPECT_NEAR(all.at("ate_rmse_m"), std::sqrt(0.02 * 0.16), 1e-12);
+  EXPECT_NEAR(all.at("ate_ratio"), std::sqrt(8.0), 1e-12);
+  EXPECT_EQ(all.at("worst_ate_rmse_m"), 0.16);
+  EXPECT_NEAR(all.at("false_confidence"), 0.03, 1e-15);
 }
 
 TEST_F(StatsCommand, RejectsAMetricThatNoRunHas) {

@@ -30,10 +30,10 @@ inline std::vector<std::string> csv_cells(const std::string& line) {
   return cells;
 }
 
-/// Rows of `stillpoint stats COMMAND --csv` by column name.
+/// Rows of `stillpoint stats COMMAND --format csv` by column name.
 inline std::vector<std::map<std::string, std::string>> stats_rows(const std::string& command,
                                                                   const std::filesystem::path& file) {
-  const ProgramResult result = run_program({"stats", command, "--csv", "--store", file.string()});
+  const ProgramResult result = run_program({"stats", command, "--format", "csv", "--store", file.string()});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   std::istringstream lines(result.out);
   std::string line;

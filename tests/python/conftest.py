@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 
 import numpy as np
@@ -104,12 +105,43 @@ def sequence(tmp_path_factory):
     return path
 
 
+TABLES = """
+title = "Tables"
+variants = ["vo", "vo+wo_mcc"]
+ablation_base = "vo"
+repetitions = 2
+max_frames = 8
+faults = ["none", "blank:start=0.1,duration=0.1"]
+expected = ["survive", "survive"]
+[recorded]
+sequences = ["walking_xyz"]
+[sweep]
+frontend.max_features = [60, 90]
+"""
+
+
+def execute(folder, sequence, plan):
+    """The store of a plan with a rendered sequence; plan and store are in a folder."""
+    (folder / "plan.toml").write_text(plan)
+    done = subprocess.run([PROGRAM, "bench", folder / "plan.toml", "--store", folder / "runs.sqlite", "--out", folder / "out"],
+                          capture_output=True, text=True, check=False, env={**os.environ, "STILLPOINT_DATA": str(sequence.parent)})
+    assert done.returncode in (0, 1), done.stderr
+    return folder / "runs.sqlite"
+
+
+@pytest.fixture(scope="session")
+def tables_store(tmp_path_factory, sequence):
+    """A store with repetitions, a sweep and a fault; runs of eight frames. faults/plan.toml is for `stats faults`, which has the
+    rendered sequences of a plan."""
+    folder = tmp_path_factory.mktemp("tables")
+    for name in ("data", "faults"):
+        (folder / name).mkdir()
+    shutil.copytree(sequence, folder / "data" / "walking_xyz")
+    (folder / "faults" / "plan.toml").write_text(TABLES.replace("[recorded]", "[rendered]"))
+    return execute(folder, folder / "data" / "walking_xyz", TABLES)
+
+
 @pytest.fixture(scope="session")
 def store_file(tmp_path_factory, sequence):
     """A store with four runs of the odometry."""
-    folder = tmp_path_factory.mktemp("store")
-    (folder / "plan.toml").write_text(PLAN)
-    done = subprocess.run([PROGRAM, "bench", folder / "plan.toml", "--store", folder / "runs.sqlite", "--out", folder / "out"],
-                          capture_output=True, text=True, check=False, env={**os.environ, "STILLPOINT_DATA": str(sequence.parent)})
-    assert done.returncode == 0, done.stderr
-    return folder / "runs.sqlite"
+    return execute(tmp_path_factory.mktemp("store"), sequence, PLAN)

@@ -86,14 +86,14 @@ def groups_of(results):
 
 
 def test_spreads_are_those_of_stats_summary(results, store_file):
-    printed = run_program("stats", "summary", "--metric", "ate_rmse_m", "--store", store_file, "--csv").stdout
-    rows = pandas.read_csv(io.StringIO(printed)).set_index("variant")
+    printed = run_program("stats", "summary", "--metric", "ate_rmse_m", "--store", store_file, "--format", "csv").stdout
+    rows = pandas.read_csv(io.StringIO(printed), float_precision="round_trip").set_index("variant")
     spreads = store.run_spreads(groups_of(results).runs, "ate_rmse_m")
     assert [spread.variant for spread in spreads] == list(rows.index) == ["stillpoint", "vo"]
     for spread in spreads:
         row = rows.loc[spread.variant]
         assert (spread.runs, spread.failed, spread.spread.count) == (row["runs"], row["failed"], row["n"])
-        assert f"{spread.spread.median:.4g}" == f"{row['median']:.4g}" and f"{spread.spread.worst:.4g}" == f"{row['worst']:.4g}"
+        assert spread.spread.median == row["median"] and spread.spread.worst == row["worst"]
 
 
 def test_ablation_is_the_difference_of_medians_of_pairs(results):

@@ -38,6 +38,7 @@ struct CompareArguments {
   std::string builds;
   std::string out;
   bool allow_missing = false;
+  bool json = false;
 };
 
 /// Tests for the SQLite file header.
@@ -222,7 +223,7 @@ int compare(const CompareArguments& arguments) {
   comparison.missing_allowed = arguments.allow_missing;
   const report::ComparisonTitle title{arguments.base, arguments.head};
   const std::string markdown = report::comparison_markdown(title, comparison);
-  std::cout << markdown;
+  std::cout << (arguments.json ? report::comparison_json(title, comparison) : markdown);
   if (!arguments.out.empty()) {
     write_files(arguments.out, {{"compare.md", markdown},
                                 {"compare.json", report::comparison_json(title, comparison)},
@@ -265,6 +266,7 @@ Command compare_command() {
            {"--allow-missing",
             "What base has and HEAD lacks (a sequence, variant, metric or module) is listed, but no finding",
             &arguments->allow_missing},
+           {"--json", "Print compare.json instead of Markdown", &arguments->json},
            {"--out", "Output folder of compare.md, compare.json and compare.xml (JUnit)", &arguments->out}},
       .action = [arguments] { return compare(*arguments); }};
 }

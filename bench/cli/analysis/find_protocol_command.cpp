@@ -7,18 +7,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/cli/analysis/pose_files.h"
 #include "bench/cli/command_line.h"
 #include "core/base/error.h"
 #include "eval/protocols/protocol_search.h"
 #include "eval/trajectory/association.h"
+#include "reports/tables/data_table.h"
 
 namespace stillpoint::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kNearest = 5;  // shown if none agrees
 
@@ -44,17 +42,15 @@ void keep_metrics(std::vector<eval::DefinedNumber>& found, const std::vector<std
                      "std or max; m or deg");
 }
 
-Json json_of(const std::vector<eval::DefinedNumber>& found) {
-  Json list = Json::array();
-  for (const eval::DefinedNumber& defined : found) {
-    list.push_back({{"agrees", defined.agrees},
-                    {"value", defined.value},
-                    {"metric", defined.metric},
-                    {"pairs", defined.pairs},
-                    {"protocol", defined.protocol},
-                    {"options", defined.options}});
-  }
-  return list;
+report::DataTable data_of(const std::vector<eval::DefinedNumber>& found) {
+  report::DataTable table{.kind = "eval_find_protocol",
+                          .columns = {"agrees", "value", "metric", "pairs", "protocol", "options"},
+                          .rows = {},
+                          .notes = {}};
+  for (const eval::DefinedNumber& defined : found)
+    table.rows.push_back({defined.agrees, defined.value, defined.metric, report::data_value(defined.pairs),
+                          defined.protocol, report::data_value(defined.options)});
+  return table;
 }
 
 void print_table(const std::vector<eval::DefinedNumber>& found, std::size_t agreeing,
@@ -94,7 +90,7 @@ int find_protocol(const FindProtocolArguments& arguments) {
   keep_metrics(found, arguments.metrics);
   const auto agreeing = static_cast<std::size_t>(std::ranges::count_if(found, &eval::DefinedNumber::agrees));
   if (arguments.json) {
-    std::cout << json_of(found).dump(2) << '\n';
+    std::cout << report::data_json(data_of(found));
   } else {
     print_table(found, agreeing, arguments.number);
   }

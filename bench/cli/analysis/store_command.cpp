@@ -20,6 +20,7 @@
 #include "bench/store/store.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
+#include "reports/tables/data_table.h"
 #include "reports/tables/tidy_runs.h"
 
 namespace stillpoint::bench {
@@ -41,6 +42,7 @@ Command store_subcommand(Command command, const std::shared_ptr<Arguments>& argu
 struct AcceptArguments {
   std::string store = "build/bench/store.sqlite";
   std::string system;
+  bool json = false;
   Acceptance subject;
 };
 
@@ -99,8 +101,24 @@ int withdraw(const AcceptArguments& arguments) {
   return kExitOk;
 }
 
+int print_acceptances(const std::vector<Acceptance>& acceptances) {
+  using report::data_value;
+  report::DataTable table{.kind = "store_accepted",
+                          .columns = {"accepted", "commit", "metric", "variant", "sequence", "reason"},
+                          .rows = {},
+                          .notes = {}};
+  for (const Acceptance& acceptance : acceptances)
+    table.rows.push_back({acceptance.accepted, acceptance.commit, acceptance.metric,
+                          data_value(acceptance.variant), data_value(acceptance.sequence),
+                          acceptance.reason});
+  std::cout << report::data_json(table);
+  return kExitOk;
+}
+
 int list(const AcceptArguments& arguments) {
-  for (const Acceptance& acceptance : Store(arguments.store).acceptances())
+  const std::vector<Acceptance> acceptances = Store(arguments.store).acceptances();
+  if (arguments.json) return print_acceptances(acceptances);
+  for (const Acceptance& acceptance : acceptances)
     std::cout << acceptance.accepted << "  " << describe(acceptance) << ": " << acceptance.reason << '\n';
   return kExitOk;
 }
@@ -130,7 +148,8 @@ std::vector<Command> acceptance_commands() {
                            arguments, withdraw),
           store_subcommand({.name = "accepted",
                             .summary = "List all accepted changes, one per line",
-                            .example = "store accepted build/bench/store.sqlite"},
+                            .example = "store accepted build/bench/store.sqlite",
+                            .options = {{"--json", report::kJsonHelp, &arguments->json}}},
                            arguments, list)};
 }
 
@@ -142,10 +161,33 @@ struct StoreArguments {
   bool numbers = false;
   bool tidy = false;
   bool force = false;
+  bool json = false;
 };
+
+int print_runs(const std::vector<StoredRun>& runs) {
+  using report::data_value;
+  const std::string_view headline = headline_metric().id;
+  report::DataTable table{
+      .kind = "store_list",
+      .columns = {"key", "system", "variant", "sequence", "build", "mode", "kind", "seed", "repetition",
+                  "axis", "axis_value", "outcome", "detail", "started", "ended", std::string(headline)},
+      .rows = {},
+      .notes = {}};
+  for (const StoredRun& run : runs) {
+    const RunIdentity& id = run.identity;
+    table.rows.push_back({run.key, id.system, id.variant, id.sequence, id.build, id.mode, id.kind, id.seed,
+                          id.repetition, data_value(id.axis),
+                          id.axis.empty() ? report::DataValue() : report::DataValue(id.axis_value),
+                          outcome_name(run.outcome), data_value(run.detail), run.started, run.ended,
+                          data_value(metric_value(run, headline))});
+  }
+  std::cout << report::data_json(table);
+  return kExitOk;
+}
 
 int list(const StoreArguments& arguments) {
   const Store store(arguments.store);
+  if (arguments.json) return print_runs(store.runs());
   for (const StoredRun& run : store.runs()) {
     const RunIdentity& identity = run.identity;
     const std::optional<double> headline = metric_value(run, headline_metric().id);
@@ -166,6 +208,10 @@ int list(const StoreArguments& arguments) {
 int show(const StoreArguments& arguments) {
   const Store store(arguments.store);
   const StoredRun run = find_run(store, arguments.run);
+  if (arguments.json) {
+    std::cout << report::data_json(report::tidy_table(std::span(&run, 1)));
+    return kExitOk;
+  }
   std::cout << fmt::format("{} {} {}: {} {}\n{} to {}\n", run.key, run.identity.sequence,
                            run.identity.variant, outcome_name(run.outcome), run.detail, run.started,
                            run.ended);
@@ -275,14 +321,16 @@ int salvage(const StoreArguments& arguments) {
 /// Subcommands that inspect single runs.
 std::vector<Command> run_subcommands(const std::shared_ptr<StoreArguments>& arguments) {
   const Option key{"KEY", "Key of the run or a prefix of it", &arguments->run};
+  const Option json{"--json", report::kJsonHelp, &arguments->json};
   return {store_subcommand({.name = "list",
                             .summary = "List all runs, one per line",
-                            .example = "store list build/bench/store.sqlite"},
+                            .example = "store list build/bench/store.sqlite",
+                            .options = {json}},
                            arguments, list),
           store_subcommand({.name = "show",
                             .summary = "Print all data of a run",
                             .example = "store show 8f18e31477d2f9b7",
-                            .options = {key}},
+                            .options = {key, json}},
                            arguments, show),
           store_subcommand({.name = "extract",
                             .summary = "Write trajectory, timings, result and manifest of a run as files",

@@ -19,6 +19,7 @@
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
+#include "reports/tables/data_table.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -29,6 +30,20 @@ std::string utc_text(fs::file_time_type time) {
   const auto seconds =
       std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::file_clock::to_sys(time));
   return fmt::format("{:%Y-%m-%d %H:%M:%S}", seconds);
+}
+
+int print_files() {
+  report::DataTable table{.kind = "data_cache",
+                          .columns = {"sequence", "frames", "bytes", "last_used", "file"},
+                          .rows = {},
+                          .notes = {}};
+  for (const datasets::CacheEntry& entry : datasets::list_cache(frame_cache_folder())) {
+    table.rows.push_back({report::data_value(entry.sequence), report::data_value(entry.frames),
+                          static_cast<std::int64_t>(entry.bytes), utc_text(entry.last_used),
+                          entry.file.filename().string()});
+  }
+  std::cout << report::data_json(table);
+  return kExitOk;
 }
 
 int list_files() {
@@ -72,10 +87,12 @@ int prune(const CachePruneArguments& arguments) {
 }
 
 Command cache_list_command() {
+  const auto json = std::make_shared<bool>(false);
   return {.name = "list",
           .summary = "List the sequences with decoded frames, the least recently used first; times in UTC",
           .example = "data cache list",
-          .action = list_files};
+          .options = {{"--json", report::kJsonHelp, json.get()}},
+          .action = [json] { return *json ? print_files() : list_files(); }};
 }
 
 Command cache_size_command() {
@@ -202,6 +219,19 @@ int add(const AddArguments& arguments) {
   return kExitOk;
 }
 
+int print_registry() {
+  report::DataTable table{.kind = "data_list",
+                          .columns = {"name", "format", "checksum", "folder", "available"},
+                          .rows = {},
+                          .notes = {}};
+  for (const RegisteredSequence& sequence : read_registry(registry_file())) {
+    table.rows.push_back({sequence.name, sequence.format, sequence.checksum, sequence.folder.string(),
+                          datasets::is_sequence_path(sequence.folder)});
+  }
+  std::cout << report::data_json(table);
+  return kExitOk;
+}
+
 /// Whether each registered sequence can be used, and the folders of the data folder, which need no
 /// registration.
 int list() {
@@ -231,10 +261,12 @@ Command add_command() {
 }
 
 Command list_command() {
+  const auto json = std::make_shared<bool>(false);
   return {.name = "list",
           .summary = "List the sequences that plans can use",
           .example = "data list",
-          .action = list};
+          .options = {{"--json", report::kJsonHelp, json.get()}},
+          .action = [json] { return *json ? print_registry() : list(); }};
 }
 
 }  // namespace

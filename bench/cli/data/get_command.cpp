@@ -19,6 +19,7 @@
 #include "bench/plan/sequence_registry.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
+#include "reports/tables/data_table.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -33,16 +34,26 @@ std::size_t available_sequences(const CatalogueDataset& dataset) {
       dataset.sequences, [&](const CatalogueSequence& sequence) { return is_available(dataset, sequence); }));
 }
 
-/// Published size of all archives, "?" if none is published.
-std::string total_size(const CatalogueDataset& dataset) {
+/// Published size of all archives.
+struct PublishedSize {
   std::uint64_t bytes = 0;
-  bool is_complete = !dataset.archives.empty();
+  bool is_complete = true;  ///< whether the size of each is published
+};
+
+PublishedSize published_size(const CatalogueDataset& dataset) {
+  PublishedSize size{.is_complete = !dataset.archives.empty()};
   for (const CatalogueArchive& archive : dataset.archives) {
-    bytes += archive.bytes;
-    is_complete = is_complete && archive.bytes > 0;
+    size.bytes += archive.bytes;
+    size.is_complete = size.is_complete && archive.bytes > 0;
   }
-  if (bytes == 0) return "?";
-  return (is_complete ? "" : "> ") + datasets::size_text(bytes);
+  return size;
+}
+
+/// "?" if none is published.
+std::string total_size(const CatalogueDataset& dataset) {
+  const PublishedSize size = published_size(dataset);
+  if (size.bytes == 0) return "?";
+  return (size.is_complete ? "" : "> ") + datasets::size_text(size.bytes);
 }
 
 int list_datasets(const std::vector<CatalogueDataset>& catalogues) {
@@ -96,11 +107,48 @@ int show_dataset(const CatalogueDataset& dataset) {
   return kExitOk;
 }
 
-int catalogue(const std::string& name) {
+/// The datasets as a table for programs.
+int print_datasets(const std::vector<CatalogueDataset>& catalogues) {
+  report::DataTable table{.kind = "data_catalogue",
+                          .columns = {"dataset", "title", "licence", "homepage", "layout", "sequences",
+                                      "available", "bytes", "bytes_complete"},
+                          .rows = {},
+                          .notes = {}};
+  for (const CatalogueDataset& dataset : catalogues) {
+    const PublishedSize size = published_size(dataset);
+    table.rows.push_back({dataset.name, dataset.title, dataset.licence, dataset.homepage, dataset.layout,
+                          report::data_value(dataset.sequences.size()),
+                          report::data_value(available_sequences(dataset)),
+                          static_cast<std::int64_t>(size.bytes), size.is_complete});
+  }
+  std::cout << report::data_json(table);
+  return kExitOk;
+}
+
+/// The sequences as a table for programs. Several may be in one archive.
+int print_dataset(const CatalogueDataset& dataset) {
+  report::DataTable table{.kind = "data_catalogue_sequences",
+                          .columns = {"sequence", "group", "archive", "bytes", "digest", "available"},
+                          .rows = {},
+                          .notes = dataset.notes};
+  for (const CatalogueSequence& sequence : dataset.sequences) {
+    for (const std::string& file : sequence.archives) {
+      const CatalogueArchive& archive = datasets::archive_of(dataset, file);
+      table.rows.push_back(
+          {catalogue_name(dataset, sequence), report::data_value(sequence.group), file,
+           archive.bytes == 0 ? report::DataValue() : report::data_value(std::size_t{archive.bytes}),
+           digest_kind(dataset, archive), is_available(dataset, sequence)});
+    }
+  }
+  std::cout << report::data_json(table);
+  return kExitOk;
+}
+
+int catalogue(const std::string& name, bool json) {
   const std::vector<CatalogueDataset> catalogues = load_catalogues();
-  if (name.empty()) return list_datasets(catalogues);
+  if (name.empty()) return json ? print_datasets(catalogues) : list_datasets(catalogues);
   const auto found = std::ranges::find(catalogues, name, &CatalogueDataset::name);
-  if (found != catalogues.end()) return show_dataset(*found);
+  if (found != catalogues.end()) return json ? print_dataset(*found) : show_dataset(*found);
   std::vector<std::string> names;
   names.reserve(catalogues.size());
   for (const CatalogueDataset& dataset : catalogues) names.push_back(dataset.name);
@@ -111,13 +159,14 @@ int catalogue(const std::string& name) {
 }  // namespace
 
 Command catalogue_command() {
+  const auto json = std::make_shared<bool>(false);
   const auto name = std::make_shared<std::string>();
-  return {
-      .name = "catalogue",
-      .summary = "List public datasets, or the sequences, licence and citation of one",
-      .example = "data catalogue tum",
-      .options = {{.name = "NAME", .help = "Dataset [all]", .target = name.get(), .may_be_omitted = true}},
-      .action = [name] { return catalogue(*name); }};
+  return {.name = "catalogue",
+          .summary = "List public datasets, or the sequences, licence and citation of one",
+          .example = "data catalogue tum",
+          .options = {{.name = "NAME", .help = "Dataset [all]", .target = name.get(), .may_be_omitted = true},
+                      {"--json", report::kJsonHelp, json.get()}},
+          .action = [name, json] { return catalogue(*name, *json); }};
 }
 
 namespace {

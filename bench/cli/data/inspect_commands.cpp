@@ -13,6 +13,7 @@
 #include "datasets/faults/sensor_fault.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_validator.h"
+#include "reports/tables/data_table.h"
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
@@ -60,6 +61,23 @@ Command check_command() {
 
 namespace {
 
+int print_faults() {
+  report::DataTable table{.kind = "data_faults",
+                          .columns = {"kind", "effect", "amount", "default", "min", "max"},
+                          .rows = {},
+                          .notes = {}};
+  for (const datasets::FaultDescriptor& fault : datasets::fault_descriptors()) {
+    const auto if_amount = [&](double value) {
+      return fault.amount.empty() ? report::DataValue() : report::DataValue(value);
+    };
+    table.rows.push_back({std::string(fault.name), std::string(fault.summary),
+                          report::data_value(std::string(fault.amount)), if_amount(fault.typical),
+                          if_amount(fault.min), if_amount(fault.max)});
+  }
+  std::cout << report::data_json(table);
+  return kExitOk;
+}
+
 int list_faults() {
   report::TableRows rows = {{"kind", "effect", "amount", "default", "range"}};
   for (const datasets::FaultDescriptor& fault : datasets::fault_descriptors()) {
@@ -75,10 +93,12 @@ int list_faults() {
 }  // namespace
 
 Command faults_command() {
+  const auto json = std::make_shared<bool>(false);
   return {.name = "faults",
           .summary = "List the sensor faults that `run --fault` injects",
           .example = "data faults",
-          .action = list_faults};
+          .options = {{"--json", report::kJsonHelp, json.get()}},
+          .action = [json] { return *json ? print_faults() : list_faults(); }};
 }
 
 }  // namespace stillpoint::bench

@@ -29,6 +29,7 @@
 #include "bench/systems/published_table.h"
 #include "bench/systems/slam_system.h"
 #include "core/base/error.h"
+#include "reports/tables/data_table.h"
 #include "reports/tables/result_tables.h"
 
 namespace stillpoint::bench {
@@ -143,6 +144,7 @@ struct BenchArguments {
   int jobs = 0;  ///< 0 = default of the executor
   std::vector<std::string> filters;
   bool dry_run = false;
+  bool json = false;
   bool estimate = false;
   int workers = 0;  ///< simulated by --estimate
   bool retry = false;
@@ -173,22 +175,51 @@ std::string later_text(const PlannedRun& run) {
   return fmt::format(", from frame {} on{}", run.later_frames, noise);
 }
 
+/// Keys of the runs in a store, which need not exist.
+std::unordered_set<std::string> stored_keys(const fs::path& store) {
+  std::unordered_set<std::string> keys;
+  if (!fs::exists(store)) return keys;
+  for (const StoredRun& run : Store(store).run_headers()) keys.insert(run.key);
+  return keys;
+}
+
+/// "cached", "pending" or "skipped".
+std::string run_state(const PlanMatrix& matrix, const PlannedRun& run,
+                      const std::unordered_set<std::string>& stored) {
+  if (stored.contains(run_key(run.identity))) return "cached";
+  return matrix.sequences[run.sequence].unavailable_reason.empty() ? "pending" : "skipped";
+}
+
+/// Prints the runs of a plan for programs. Without a store, none is cached.
+int print_runs_of(const PlanMatrix& matrix, const fs::path& store) {
+  using report::data_value;
+  report::DataTable table{
+      .kind = "plan_runs",
+      .columns = {"key", "system", "variant", "sequence", "build", "mode", "kind", "seed", "repetition",
+                  "axis", "axis_value", "later_frames", "state", "unavailable"},
+      .rows = {},
+      .notes = {}};
+  const std::unordered_set<std::string> stored = stored_keys(store);
+  for (const PlannedRun& run : matrix.runs) {
+    const RunIdentity& id = run.identity;
+    table.rows.push_back({run_key(id), id.system, id.variant, id.sequence, id.build, id.mode, id.kind,
+                          id.seed, id.repetition, data_value(id.axis),
+                          id.axis.empty() ? report::DataValue() : report::DataValue(id.axis_value),
+                          static_cast<std::int64_t>(run.later_frames), run_state(matrix, run, stored),
+                          data_value(matrix.sequences[run.sequence].unavailable_reason)});
+  }
+  std::cout << report::data_json(table);
+  return kExitOk;
+}
+
 /// Prints the state of each run of the plan. Executes nothing and does not create the store.
 int dry_run(const PlanMatrix& matrix, const fs::path& store) {
-  std::unordered_set<std::string> stored_keys;
-  if (fs::exists(store)) {
-    for (const StoredRun& run : Store(store).run_headers()) stored_keys.insert(run.key);
-  }
+  const std::unordered_set<std::string> stored = stored_keys(store);
   std::size_t missing = 0;
   for (const PlannedRun& run : matrix.runs) {
-    const bool cached = stored_keys.contains(run_key(run.identity));
-    const bool available = matrix.sequences[run.sequence].unavailable_reason.empty();
-    missing += cached ? 0 : 1;
-    std::cout << fmt::format("{}  {}\n",
-                             cached      ? "cached "
-                             : available ? "pending"
-                                         : "skipped",
-                             run_label(matrix.plan, run.identity) + later_text(run));
+    const std::string state = run_state(matrix, run, stored);
+    missing += state == "cached" ? 0 : 1;
+    std::cout << fmt::format("{:<7}  {}\n", state, run_label(matrix.plan, run.identity) + later_text(run));
   }
   std::cout << fmt::format("{} of {} runs cached\n", matrix.runs.size() - missing, matrix.runs.size());
   return kExitOk;
@@ -248,7 +279,10 @@ int run_bench(const BenchArguments& arguments) {
         "gray level: they are replicates",
         last->later_frames);
   if (arguments.workers > 0 && !arguments.estimate) throw InputError("--workers", "requires --estimate");
-  if (arguments.dry_run) return dry_run(matrix, arguments.store);
+  if (arguments.json && !arguments.dry_run)
+    throw InputError("--json", "requires --dry-run; a plan that is executed writes table.json to --out");
+  if (arguments.dry_run)
+    return arguments.json ? print_runs_of(matrix, arguments.store) : dry_run(matrix, arguments.store);
   if (arguments.estimate) {
     std::cout << estimate_text(matrix, arguments.store,
                                {.jobs = local_jobs(arguments.jobs),
@@ -299,6 +333,8 @@ Command bench_command() {
                    "Execute only runs whose sequence, variant or system matches this glob; may be repeated",
                    &arguments->filters},
                   {"--dry-run", "List the runs and their state; execute none", &arguments->dry_run},
+                  {"--json", "With --dry-run: print JSON; see bench/README.md, \"Schemas\"",
+                   &arguments->json},
                   {"--estimate", "Print how long the plan takes, with --tasks also by tasks; execute nothing",
                    &arguments->estimate},
                   {"--workers",
@@ -316,15 +352,23 @@ Command bench_command() {
 
 namespace {
 
-int list() {
+int list(bool json) {
+  if (json) {
+    report::DataTable table{.kind = "plan_list", .columns = {"name", "title"}, .rows = {}, .notes = {}};
+    for (const std::string& name : embedded_names(TomlKind::kPlan))
+      table.rows.push_back({name, load_plan(name).title});
+    std::cout << report::data_json(table);
+    return kExitOk;
+  }
   for (const std::string& name : embedded_names(TomlKind::kPlan)) {
     std::cout << fmt::format("{:<32} {}\n", name, load_plan(name).title);
   }
   return kExitOk;
 }
 
-int show(const std::string& name) {
+int show(const std::string& name, bool json) {
   const PlanMatrix matrix = expand_plan(load_plan(name), build_name(), {});
+  if (json) return print_runs_of(matrix, "");
   std::cout << matrix.plan.title << "\n\n";
   for (const PlannedRun& run : matrix.runs) {
     const std::string& missing = matrix.sequences[run.sequence].unavailable_reason;
@@ -339,17 +383,22 @@ int show(const std::string& name) {
 
 Command plan_command() {
   const auto name = std::make_shared<std::string>();
-  return {
-      .name = "plan",
-      .summary = "List plans and their runs",
-      .example = "plan show quick",
-      .subcommands = {
-          {.name = "show",
-           .summary = "List all runs of a plan with their keys",
-           .example = "plan show quick",
-           .options = {{"PLAN", "Plan: an embedded name or a TOML file", name.get()}},
-           .action = [name] { return show(*name); }},
-          {.name = "list", .summary = "List the embedded plans", .example = "plan list", .action = list}}};
+  const auto json = std::make_shared<bool>(false);
+  const Option json_option{"--json", report::kJsonHelp, json.get()};
+  return {.name = "plan",
+          .summary = "List plans and their runs",
+          .example = "plan show quick",
+          .subcommands = {
+              {.name = "show",
+               .summary = "List all runs of a plan with their keys",
+               .example = "plan show quick",
+               .options = {{"PLAN", "Plan: an embedded name or a TOML file", name.get()}, json_option},
+               .action = [name, json] { return show(*name, *json); }},
+              {.name = "list",
+               .summary = "List the embedded plans",
+               .example = "plan list",
+               .options = {json_option},
+               .action = [json] { return list(*json); }}}};
 }
 
 }  // namespace stillpoint::bench

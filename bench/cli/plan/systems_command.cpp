@@ -10,21 +10,27 @@
 #include "bench/record/output_folder.h"
 #include "bench/systems/system_check.h"
 #include "core/base/error.h"
+#include "reports/tables/data_table.h"
 
 namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-int list_systems(const std::vector<std::string>& files) {
+int list_systems(const std::vector<std::string>& files, bool json) {
   std::vector<std::string> names = embedded_names(TomlKind::kSystem);
   names.insert(names.end(), files.begin(), files.end());
+  report::DataTable table{
+      .kind = "systems_list", .columns = {"name", "version", "command", "program"}, .rows = {}, .notes = {}};
   for (const std::string& name : names) {
     const ExternalSystem system = load_external_system(name);
     const std::string program = find_program(system);
+    table.rows.push_back({name, system.version, system.command.front(), report::data_value(program)});
+    if (json) continue;
     std::cout << fmt::format("{:<28} {:<12} {}\n", name, system.version,
                              program.empty() ? "not found: " + system.command.front() : program);
   }
+  if (json) std::cout << report::data_json(table);
   return kExitOk;
 }
 
@@ -86,14 +92,16 @@ Command systems_command() {
   const auto files = std::make_shared<std::vector<std::string>>();
   const auto name = std::make_shared<std::string>();
   const auto out = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
   return {.name = "systems",
           .summary = "Describe other SLAM systems, and try them",
           .example = "systems check my_slam.toml",
           .subcommands = {{.name = "list",
                            .summary = "List the shipped descriptions, and where their programs are",
                            .example = "systems list",
-                           .options = {{"--file", "A description of your own; may be repeated", files.get()}},
-                           .action = [files] { return list_systems(*files); }},
+                           .options = {{"--file", "A description of your own; may be repeated", files.get()},
+                                       {"--json", report::kJsonHelp, json.get()}},
+                           .action = [files, json] { return list_systems(*files, *json); }},
                           check_system_command(),
                           system_run_command(),
                           {.name = "new",

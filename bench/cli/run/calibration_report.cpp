@@ -106,7 +106,8 @@ std::string calibration_json(const CalibrationSubject& subject, const Calibratio
                           {"outcome", outcome_name(p.outcome)}});
   }
   const HeldOutResiduals& h = result.held_out;
-  Json json = {{"sequence", subject.sequence},
+  Json json = {{"schema", 1},
+               {"sequence", subject.sequence},
                {"keyframes", result.keyframes},
                {"landmarks", result.landmarks},
                {"observations", result.observations},

@@ -7,7 +7,9 @@
 #include "bench/cli/command_line.h"
 #include "bench/config/config_file.h"
 #include "bench/config/config_hash.h"
+#include "bench/config/config_keys.h"
 #include "bench/config/toml_source.h"
+#include "reports/tables/data_table.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -27,13 +29,22 @@ int list() {
 /// The operands of `config diff`: variants of the default base.
 struct DiffArguments {
   std::string a, b;
+  bool json = false;
 };
 
 int diff(const DiffArguments& arguments) {
   const auto load = [](const std::string& variant) {
     return load_config({.base = "stillpoint", .variant = variant, .settings = {}});
   };
-  std::cout << difference_text(load(arguments.a), load(arguments.b));
+  if (!arguments.json) {
+    std::cout << difference_text(load(arguments.a), load(arguments.b));
+    return kExitOk;
+  }
+  report::DataTable table{
+      .kind = "config_diff", .columns = {"key", "a", "b", "unit"}, .rows = {}, .notes = {}};
+  for (const auto& [key, a, b, unit] : different_keys(load(arguments.a), load(arguments.b)))
+    table.rows.push_back({key, a, b, report::data_value(unit)});
+  std::cout << report::data_json(table);
   return kExitOk;
 }
 
@@ -43,12 +54,25 @@ Command diff_command() {
           .summary = "Print the keys that differ between two configs, with both values and the unit",
           .example = "config diff stillpoint dynamic_vins+vo",
           .options = {{"A", "Embedded name or TOML file, with overlays joined by +", &arguments->a},
-                      {"B", "The same, of the other config", &arguments->b}},
+                      {"B", "The same, of the other config", &arguments->b},
+                      {"--json", report::kJsonHelp, &arguments->json}},
           .action = [arguments] { return diff(*arguments); }};
 }
 
-int reference() {
-  std::cout << config_reference();
+int reference(bool json) {
+  if (!json) {
+    std::cout << config_reference();
+    return kExitOk;
+  }
+  using report::data_value;
+  report::DataTable table{.kind = "config_reference",
+                          .columns = {"key", "meaning", "type", "min", "max", "unit", "default", "paper"},
+                          .rows = {},
+                          .notes = {}};
+  for (const KeyReference& key : key_references())
+    table.rows.push_back({key.key, key.meaning, key.type, data_value(key.min), data_value(key.max),
+                          data_value(key.unit), key.default_value, data_value(key.paper)});
+  std::cout << report::data_json(table);
   return kExitOk;
 }
 
@@ -56,6 +80,7 @@ int reference() {
 
 Command config_command() {
   const auto request = std::make_shared<ConfigRequest>();
+  const auto json = std::make_shared<bool>(false);
   Command show_config{
       .name = "show",
       .summary = "Print all keys of a config after inheritance, overlays and overrides",
@@ -73,7 +98,8 @@ Command config_command() {
                               "Explain all keys: meaning, unit, range, default, section of the paper "
                               "(Markdown)",
                           .example = "config reference",
-                          .action = reference};
+                          .options = {{"--json", report::kJsonHelp, json.get()}},
+                          .action = [json] { return reference(*json); }};
   return {.name = "config",
           .summary = "Show, compare and explain configs and their keys",
           .example = "config show",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Selection of runs for `stillpoint stats`, and its output: one table over groups of runs that may be
-/// pooled.
+/// pooled, for readers or for programs.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,17 @@
 
 #include "bench/analysis/run_groups.h"
 #include "bench/analysis/run_statistics.h"
+#include "core/base/fields.h"
+#include "reports/tables/data_table.h"
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
+
+enum class StatsFormat { kTable, kCsv, kJson };
+constexpr auto enum_names(StatsFormat) {
+  return EnumNames<StatsFormat, 3>{
+      {{StatsFormat::kTable, "table"}, {StatsFormat::kCsv, "csv"}, {StatsFormat::kJson, "json"}}};
+}
 
 struct StatsArguments {
   std::string store = "build/bench/store.sqlite";
@@ -21,7 +29,8 @@ struct StatsArguments {
   std::string metric;
   std::string base;
   std::string other;  ///< store that `stats repeat` compares with
-  bool csv = false;
+  std::string format_name = "table";
+  StatsFormat format = StatsFormat::kTable;  ///< of `format_name`
 };
 
 /// The runs that the arguments select, in groups.
@@ -43,6 +52,12 @@ void require_metric(const RunSelection& selection, const std::string& metric);
 /// @param counts n of the rows
 [[nodiscard]] std::string interval_note(const std::string& test, const std::set<std::size_t>& counts);
 
+/// Sentence about runs or pairs that count once.
+/// @param what "runs" or "pairs"
+[[nodiscard]] std::string copies_note(std::size_t copies, const char* what);
+
+[[nodiscard]] std::string without_value_note(std::size_t count, const char* what);
+
 /// Notes, followed by those about runs that were left out.
 [[nodiscard]] std::vector<std::string> with_left_out(std::vector<std::string> notes,
                                                      const RunSelection& selection);
@@ -51,15 +66,30 @@ void require_metric(const RunSelection& selection, const std::string& metric);
 [[nodiscard]] std::vector<std::string> with_doubts(std::vector<std::string> notes,
                                                    const std::vector<std::string>& doubts);
 
+/// Unit of a metric, as its runs state it; empty for ratios and counts.
+[[nodiscard]] std::string metric_unit(const RunSelection& selection, const std::string& metric);
+
+/// Low and high end; no data without an interval.
+[[nodiscard]] report::DataRow interval_values(const std::optional<eval::Interval>& interval);
+
 /// Rows of one group.
 struct GroupRows {
   const RunGroup* group = nullptr;
-  report::TableRows rows;
+  report::TableRows rows;             ///< for readers
+  std::vector<report::DataRow> data;  ///< for programs; need not be one for each of `rows`
 };
 
-/// Prints the rows of all groups under one header, and the notes below them. Build, machine and mode are
-/// columns where they differ between groups, and always in CSV, whose notes are written to standard error.
-void print_groups(const std::vector<std::string>& header, const std::vector<GroupRows>& groups,
-                  const std::vector<std::string>& notes, const StatsArguments& arguments);
+/// The rows of all groups under one header. Build, machine and mode are columns of their own.
+struct StatsTable {
+  std::vector<std::string> header;   ///< of `GroupRows::rows`
+  std::string kind;                  ///< of the table for programs, see `report::DataTable`
+  std::vector<std::string> columns;  ///< of `GroupRows::data`
+  std::vector<GroupRows> groups;     ///< at least one
+  std::vector<std::string> notes;
+};
+
+/// Prints a table with the notes below it. For readers, build, machine and mode are columns where they differ
+/// between groups. For programs, they always are; notes of CSV are written to standard error.
+void print_stats(const StatsTable& table, const StatsArguments& arguments);
 
 }  // namespace stillpoint::bench

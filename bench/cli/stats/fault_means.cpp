@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/cli/analysis/fault_means.h"
-
+// `stillpoint stats imperfections`.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "bench/cli/command_line.h"
+#include "bench/cli/stats/stats_actions.h"
 #include "bench/model/metrics.h"
-#include "bench/systems/external_system.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -81,10 +80,25 @@ struct FaultMeans {
             lost < runs ? number_cell(worst_ate_m) : "n/a",
             wrong ? fmt::format("{:.2f} %", 100.0 * *wrong) : "n/a"};
   }
+
+  [[nodiscard]] report::DataRow values(const std::string& fault, const std::string& variant) const {
+    using report::data_value;
+    const auto exp_value = [](const std::optional<double>& log) {
+      return log ? report::DataValue(std::exp(*log)) : report::DataValue();
+    };
+    return {fault,
+            variant,
+            static_cast<std::int64_t>(runs),
+            static_cast<std::int64_t>(lost),
+            exp_value(log_ate.value()),
+            exp_value(log_ratio.value()),
+            lost < runs ? report::DataValue(worst_ate_m) : report::DataValue(),
+            data_value(false_confidence.value())};
+  }
 };
 
 /// In the order of the first run of each fault, the undisturbed runs first.
-report::TableRows rows_of(const RunGroup& group) {
+GroupRows mean_rows(const RunGroup& group) {
   std::vector<std::string> faults;
   std::map<std::pair<std::string, std::string>, FaultMeans> means;  // by fault and variant
   for (const StoredRun& run : group.runs) {
@@ -93,13 +107,17 @@ report::TableRows rows_of(const RunGroup& group) {
     means[{fault, run.identity.variant}].add(group, run);
     if (!fault.empty()) means[{"(all)", run.identity.variant}].add(group, run);
   }
-  if (faults.empty() || (faults.size() == 1 && faults.front().empty())) return {};
+  if (faults.empty() || (faults.size() == 1 && faults.front().empty()))
+    return {.group = &group, .rows = {}, .data = {}};
   std::stable_partition(faults.begin(), faults.end(), [](const std::string& fault) { return fault.empty(); });
   faults.emplace_back("(all)");
-  report::TableRows rows;
+  GroupRows rows{.group = &group, .rows = {}, .data = {}};
   for (const std::string& fault : faults) {
+    const std::string name = fault.empty() ? "(none)" : fault;
     for (const auto& [key, mean] : means) {
-      if (key.first == fault) rows.push_back(mean.cells(fault.empty() ? "(none)" : fault, key.second));
+      if (key.first != fault) continue;
+      rows.rows.push_back(mean.cells(name, key.second));
+      rows.data.push_back(mean.values(name, key.second));
     }
   }
   return rows;
@@ -114,25 +132,23 @@ int stats_imperfections(const StatsArguments& arguments) {
   const RunSelection selection = chosen_runs(store, chosen);
   std::vector<GroupRows> groups;
   for (const RunGroup& group : selection.groups) {
-    GroupRows rows{.group = &group, .rows = rows_of(group)};
+    GroupRows rows = mean_rows(group);
     if (!rows.rows.empty()) groups.push_back(std::move(rows));
   }
   if (groups.empty())
     throw InputError(chosen.store, "contains no run with a fault; add \"faults\" to the plan");
-  print_groups(
-      {"fault", "variant", "runs", "lost", "ATE m", "ratio", "worst ATE m", "false confidence"}, groups,
-      with_left_out(
-          {"ATE: geometric mean over the runs that are not lost; ratio: geometric mean of the ATE relative "
-           "to the same sequence without a fault."},
-          selection),
+  print_stats(
+      {.header = {"fault", "variant", "runs", "lost", "ATE m", "ratio", "worst ATE m", "false confidence"},
+       .kind = "stats_imperfections",
+       .columns = {"fault", "variant", "runs", "lost", "ate_rmse_m", "ate_ratio", "worst_ate_rmse_m",
+                   "false_confidence"},
+       .groups = std::move(groups),
+       .notes = with_left_out({"ATE: geometric mean over the runs that are not lost; ratio: "
+                               "geometric mean of the ATE relative to the same sequence without a "
+                               "fault."},
+                              selection)},
       chosen);
   return kExitOk;
-}
-
-std::vector<std::string> compared_names(const BenchPlan& plan) {
-  std::vector<std::string> names = plan.variants;
-  for (const std::string& system : plan.systems) names.push_back(load_external_system(system).name);
-  return names;
 }
 
 }  // namespace stillpoint::bench

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Keys of configs as tables: their meaning, and their differences between two configs. The texts of
+/// config_file.h are made of them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/odometry_config.h"
+
+namespace stillpoint::bench {
+
+/// A key whose values differ, in TOML syntax.
+struct DifferentKey {
+  std::string key, a, b, unit;
+};
+
+[[nodiscard]] std::vector<DifferentKey> different_keys(const OdometryConfig& a, const OdometryConfig& b);
+
+/// What a key means.
+struct KeyReference {
+  std::string key, meaning;
+  std::string type;           ///< or the choices
+  std::optional<double> min;  ///< of numbers
+  std::optional<double> max;
+  std::string unit;           ///< empty: none
+  std::string default_value;  ///< in TOML syntax
+  std::string paper;          ///< section; empty: not in the paper
+};
+
+[[nodiscard]] std::vector<KeyReference> key_references();
+
+}  // namespace stillpoint::bench
