@@ -118,7 +118,7 @@ row bench/executors core/base eval/io bench/model bench/store bench/store/mainte
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/analysis/search core/base eval/statistics bench/model bench/analysis
 row bench/serve core/base bench/record
-row bench/python $common $eval core/detector core/pipeline core/pipeline/stages datasets datasets/bags bench/model bench/store bench/analysis
+row bench/python $common $eval core/detector core/pipeline core/pipeline/stages datasets datasets/bags datasets/synthetic/sequence bench/model bench/store bench/analysis
 row bench/rivals core/base core/geometry core/types datasets eval/io
 row bench/micro $core tests/support tests/support/simulated
 
@@ -127,7 +127,7 @@ stored="core/base bench/model bench/store bench/analysis"
 row reports/tables $stored bench/config eval/metrics eval/statistics bench/systems
 row reports/drawing core/base core/geometry core/types datasets/io eval/io eval/metrics eval/openloris eval/protocols eval/statistics eval/trajectory bench/run bench/record \
   reports/tables
-row reports/frames core/base core/types core/pipeline/runners bench/run datasets datasets/bags datasets/foxglove datasets/io eval/metrics eval/trajectory
+row reports/frames core/base core/types core/pipeline/runners bench/model bench/store bench/run datasets datasets/bags datasets/foxglove datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
 row reports/page $stored core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols bench/config bench/profile bench/record bench/systems bench/plan reports/tables \
   reports/drawing
@@ -144,7 +144,7 @@ row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catal
   reports/text reports/page
 row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan bench/run \
   bench/plan/execution bench/analysis bench/analysis/search \
-  bench/executors bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard reports/live
+  bench/executors bench/serve reports/tables reports/text reports/drawing reports/frames reports/page reports/dashboard reports/live
 row bench/cli/stats $execution eval/metrics bench/store bench/systems bench/plan bench/analysis reports/tables
 row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
 

@@ -28,6 +28,20 @@ double milliseconds(std::int64_t ns, std::int64_t calls) {
 
 }  // namespace
 
+FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
+  const OdometryCounters& counters = update.counters;
+  return {.frame = update.frame_id,
+          .t_ns = t.ns,
+          .status = std::string(status_name(update.status)),
+          .tracked_features = counters.tracked_features,
+          .window_landmarks = counters.window_landmarks,
+          .depth_landmarks = counters.depth_landmarks,
+          .dynamic_features = counters.dynamic_features,
+          .solver_iterations = counters.solver_iterations,
+          .keyframe = counters.keyframe,
+          .reset = counters.reset};
+}
+
 bool is_thread(Module module) {
   return module == Module::kTrackingThread || module == Module::kOptimizationThread;
 }
@@ -129,20 +143,6 @@ SensorInput input_of(const datasets::SequenceInfo& info, const RunSpec& spec, Fr
           .change_detections = info.change_detections,
           .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); },
           .map = spec.map};
-}
-
-FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
-  const OdometryCounters& counters = update.counters;
-  return {.frame = update.frame_id,
-          .t_ns = t.ns,
-          .status = std::string(status_name(update.status)),
-          .tracked_features = counters.tracked_features,
-          .window_landmarks = counters.window_landmarks,
-          .depth_landmarks = counters.depth_landmarks,
-          .dynamic_features = counters.dynamic_features,
-          .solver_iterations = counters.solver_iterations,
-          .keyframe = counters.keyframe,
-          .reset = counters.reset};
 }
 
 eval::PoseClaim claim_of(OdometryStatus status) {

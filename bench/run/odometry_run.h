@@ -158,4 +158,7 @@ struct OdometryRun {
 [[nodiscard]] OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                                        RunControl control);
 
+/// The work of the odometry for the frame at t.
+[[nodiscard]] FrameCounters counters_of(const OdometryUpdate& update, Timestamp t);
+
 }  // namespace stillpoint::bench

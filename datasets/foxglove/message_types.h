@@ -5,6 +5,7 @@
 ///
 ///   stillpoint.Status  status of the odometry after a frame, and its counters
 ///   stillpoint.State   estimate with covariance: pose of the body, velocity, biases, calibration
+///   stillpoint.Claim   status and standard deviations along the least certain directions, of a stored run
 ///   stillpoint.Timings times of the modules in a frame
 ///   stillpoint.Imu     one inertial sample
 ///   stillpoint.Loop    one recognized place, accepted or refused

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "datasets/bags/mcap.h"
-#include "datasets/foxglove/message_types.h"
 #include "datasets/foxglove/messages.h"
 #include "datasets/foxglove/protobuf.h"
 #include "datasets/io/image_io.h"
 #include "eval/metrics/rpe.h"
 #include "eval/trajectory/alignment.h"
 #include "reports/frames/annotated_frames.h"
+#include "reports/frames/recording_channels.h"
 
 namespace stillpoint::report {
 namespace {
@@ -25,25 +24,15 @@ using datasets::ProtobufWriter;
 
 constexpr const char* kMapFrame = "map";
 constexpr const char* kBodyFrame = "body";
-constexpr const char* kCameraFrame = "camera";
-constexpr const char* kTruthFrame = "truth";
 constexpr datasets::MessageColor kDetectedBox = {.r = 255, .g = 230, .b = 0};
 constexpr datasets::MessageColor kCompensatedBox = {.r = 60, .g = 140, .b = 255};
 constexpr double kMillimeters = 1000.0;  ///< per meter
-
-std::string world_frame(int segment) { return segment == 0 ? "world" : "world_" + std::to_string(segment); }
 
 datasets::MessageColor color_of(std::optional<LabelClass> label) {
   const cv::Scalar rgb = label_color(label);
   return {.r = static_cast<std::uint8_t>(rgb[0]),
           .g = static_cast<std::uint8_t>(rgb[1]),
           .b = static_cast<std::uint8_t>(rgb[2])};
-}
-
-std::vector<Pose> poses_of(const Trajectory& trajectory) {
-  std::vector<Pose> poses;
-  for (const StampedPose& pose : trajectory.poses) poses.push_back(pose.T_w_f);
-  return poses;
 }
 
 /// Calls `action` with each feature and its label, if it has one. Both lists are sorted by id.
@@ -55,25 +44,6 @@ void for_each_label(const FrameReport& report, const Action& action) {
     const bool found = label != report.dynamic.labels.end() && label->id == feature.id;
     action(feature, found ? std::optional(label->label) : std::nullopt);
   }
-}
-
-std::string status_message(const FrameReport& report) {
-  const OdometryUpdate& update = report.update;
-  const OdometryCounters& counters = update.counters;
-  return ProtobufWriter()
-      .bytes(1, datasets::encode_timestamp(report.frame.t))
-      .integer(2, update.frame_id)
-      .bytes(3, status_name(update.status))
-      .bytes(4, reason_name(update.reason))
-      .integer(5, update.segment)
-      .integer(6, counters.tracked_features)
-      .integer(7, counters.window_landmarks)
-      .integer(8, counters.depth_landmarks)
-      .integer(9, counters.dynamic_features)
-      .integer(10, counters.solver_iterations)
-      .integer(11, counters.keyframe ? 1 : 0)
-      .integer(12, counters.reset ? 1 : 0)
-      .take();
 }
 
 /// The covariance of position and rotation, both in the axes of the world; row-major.
@@ -101,20 +71,16 @@ std::string state_message(const FrameReport& report) {
   return message.take();
 }
 
+/// The times of the modules that were executed.
 std::string timings_message(const FrameReport& report) {
-  ProtobufWriter message;
-  message.bytes(1, datasets::encode_timestamp(report.frame.t)).integer(2, report.update.frame_id);
+  std::vector<bench::TimingSample> samples;
   for (std::size_t i = 0; i < kModuleCount; ++i) {
     const auto module = static_cast<Module>(i);
     const ModuleTime& time = report.update.timings[module];
-    if (time.calls == 0) continue;
-    message.bytes(3, ProtobufWriter()
-                         .bytes(1, module_name(module))
-                         .number(2, static_cast<double>(time.ns) * 1e-6)
-                         .integer(3, time.calls)
-                         .take());
+    if (time.calls > 0)
+      samples.push_back({report.update.frame_id, std::string(module_name(module)), time.ns, time.calls});
   }
-  return message.take();
+  return encode_timings(report.frame.t, report.update.frame_id, samples);
 }
 
 std::string imu_message(const ImuSample& sample) {
@@ -189,60 +155,32 @@ struct RunRecording::Impl {
         images(recorded),
         truth(eval::move_to_frame(sequence.ground_truth.trajectory, sequence.ground_truth.T_c_f.inverse(),
                                   "camera")),
-        writer(file, datasets::ChunkCompression::kZstd, "") {}
-
-  /// Writes a message; the channel is added with the first one.
-  void write(const std::string& topic, std::string_view type, Timestamp t, std::string_view message) {
-    auto channel = channels.find(topic);
-    if (channel == channels.end()) {
-      const std::uint32_t added = writer.add_channel({.topic = topic,
-                                                      .message_encoding = "protobuf",
-                                                      .type = std::string(type),
-                                                      .schema_encoding = "protobuf",
-                                                      .schema = datasets::protobuf_schema(type)});
-      channel = channels.emplace(topic, added).first;
-    }
-    writer.write(channel->second, t, message);
-  }
-
-  void write_pose(const std::string& topic, const FoxgloveHeader& header, const Pose& pose) {
-    write(topic, "foxglove.PoseInFrame", header.t, datasets::encode_pose_in_frame(header, pose));
-  }
-
-  void write_path(const std::string& topic, std::string_view frame, const Trajectory& trajectory) {
-    if (trajectory.poses.empty()) return;
-    const FoxgloveHeader header{info.frame_times.front(), frame};
-    write(topic, "foxglove.PosesInFrame", header.t, datasets::encode_path(header, poses_of(trajectory)));
-  }
-
-  void write_transform(const FoxgloveHeader& header, std::string_view child, const Pose& pose) {
-    write("/tf", "foxglove.FrameTransform", header.t, datasets::encode_transform(header, child, pose));
-  }
+        channels(file, sequence.frame_times.front()) {}
 
   /// IMU samples and true poses up to a frame.
   void write_references(Timestamp t) {
     for (; next_imu < info.imu.size() && info.imu[next_imu].t <= t; ++next_imu) {
       const ImuSample& sample = info.imu[next_imu];
-      if (sample.t.ns >= 0) write("/imu", "stillpoint.Imu", sample.t, imu_message(sample));
+      if (sample.t.ns >= 0) channels.write("/imu", "stillpoint.Imu", sample.t, imu_message(sample));
     }
     for (; next_truth < truth.poses.size() && truth.poses[next_truth].t <= t; ++next_truth) {
       const auto& [T_w_c, stamp] = truth.poses[next_truth];
-      if (stamp.ns >= 0) write_pose("/truth", {stamp, kTruthFrame}, T_w_c);
+      if (stamp.ns >= 0) channels.write_pose("/truth", {stamp, kTruthFrame}, T_w_c);
     }
   }
 
   void write_estimate(const OdometryUpdate& update, Timestamp t) {
     const std::string world = world_frame(update.segment);
     const std::string suffix = update.segment == 0 ? "" : "/segment_" + std::to_string(update.segment);
-    write_pose("/estimate" + suffix, {t, world}, update.T_w_c);
-    write_transform({t, world}, kBodyFrame, update.state.T_w_b);
-    write_transform({t, kBodyFrame}, kCameraFrame, update.state.T_w_b.inverse() * update.T_w_c);
+    channels.write_pose("/estimate" + suffix, {t, world}, update.T_w_c);
+    channels.write_transform({t, world}, kBodyFrame, update.state.T_w_b);
+    channels.write_transform({t, kBodyFrame}, kCameraFrame, update.state.T_w_b.inverse() * update.T_w_c);
     if (update.segment != 0) return;
     estimate.poses.push_back({t, update.T_w_c});
     if (aligned) return;
     const auto matches = eval::strict_matches(truth, {.frame = "camera", .poses = {{t, update.T_w_c}}});
     if (matches.empty()) return;
-    write_transform({t, world}, kTruthFrame, matches.front().est * matches.front().gt.inverse());
+    channels.write_transform({t, world}, kTruthFrame, matches.front().est * matches.front().gt.inverse());
     aligned = true;
   }
 
@@ -253,22 +191,22 @@ struct RunRecording::Impl {
                       known->second.q.coeffs() == update.T_m_w.q.coeffs();
     if (!update.in_map || same) return;
     T_m_w[update.segment] = update.T_m_w;
-    write_transform({t, kMapFrame}, world_frame(update.segment), update.T_m_w);
+    channels.write_transform({t, kMapFrame}, world_frame(update.segment), update.T_m_w);
   }
 
   void write_images(const Frame& frame) {
     const cv::Mat color = color_image(frame);
-    write("/camera/image", "foxglove.CompressedImage", frame.t,
-          datasets::encode_jpeg_message({frame.t, kCameraFrame},
-                                        datasets::encode_jpeg(color.empty() ? frame.gray : color)));
-    if (!frame.depth.empty()) write("/camera/depth", "foxglove.RawImage", frame.t, depth_message(frame));
+    channels.write("/camera/image", "foxglove.CompressedImage", frame.t,
+                   datasets::encode_jpeg_message({frame.t, kCameraFrame},
+                                                 datasets::encode_jpeg(color.empty() ? frame.gray : color)));
+    if (!frame.depth.empty())
+      channels.write("/camera/depth", "foxglove.RawImage", frame.t, depth_message(frame));
   }
 
   const datasets::SequenceInfo& info;
   RecordedImages images;
   Trajectory truth;  ///< of the camera
-  datasets::McapWriter writer;
-  std::map<std::string, std::uint32_t> channels;
+  RecordingChannels channels;
   Trajectory estimate;         ///< of segment 0
   std::size_t next_imu = 0;    ///< first sample that is not written yet
   std::size_t next_truth = 0;  ///< first true pose that is not written yet
@@ -284,34 +222,41 @@ RunRecording::RunRecording(const std::filesystem::path& file, const datasets::Se
         "has no frames, or frames at negative times, which MCAP files do not have; run it without --mcap");
   impl_ = std::make_shared<Impl>(file, info, images);
   const FoxgloveHeader camera{info.frame_times.front(), kCameraFrame};
-  impl_->write("/camera/calibration", "foxglove.CameraCalibration", camera.t,
-               datasets::encode_camera(camera, info.rig.camera));
-  impl_->write_path("/truth/path", kTruthFrame, impl_->truth);
+  impl_->channels.write("/camera/calibration", "foxglove.CameraCalibration", camera.t,
+                        datasets::encode_camera(camera, info.rig.camera));
+  impl_->channels.write_path("/truth/path", kTruthFrame, impl_->truth);
 }
 
 void RunRecording::add(const FrameReport& report) {
   const Timestamp t = report.frame.t;
+  const OdometryUpdate& update = report.update;
   impl_->write_references(t);
   impl_->write_map(report.update, t);
   if (is_located(report.update.status)) {
     impl_->write_estimate(report.update, t);
-    impl_->write("/state", "stillpoint.State", t, state_message(report));
+    impl_->channels.write("/state", "stillpoint.State", t, state_message(report));
   }
-  impl_->write("/status", "stillpoint.Status", t, status_message(report));
-  impl_->write("/timings", "stillpoint.Timings", t, timings_message(report));
-  impl_->write("/camera/annotations", "foxglove.ImageAnnotations", t, annotations_message(report));
-  impl_->write("/landmarks", "foxglove.PointCloud", t, landmarks_message(report));
+  impl_->channels.write("/status", "stillpoint.Status", t,
+                        encode_status({.t = t,
+                                       .frame = update.frame_id,
+                                       .status = status_name(update.status),
+                                       .reason = reason_name(update.reason),
+                                       .segment = update.segment,
+                                       .counters = update.counters}));
+  impl_->channels.write("/timings", "stillpoint.Timings", t, timings_message(report));
+  impl_->channels.write("/camera/annotations", "foxglove.ImageAnnotations", t, annotations_message(report));
+  impl_->channels.write("/landmarks", "foxglove.PointCloud", t, landmarks_message(report));
   if (impl_->images == RecordedImages::kColorAndDepth) impl_->write_images(report.frame);
 }
 
 void RunRecording::finish(const bench::LoopRun* loops) {
-  impl_->write_path("/estimate/path", world_frame(0), impl_->estimate);
+  impl_->channels.write_path("/estimate/path", world_frame(0), impl_->estimate);
   if (loops != nullptr) {
-    impl_->write_path("/estimate/optimized", kMapFrame, loops->optimized);
+    impl_->channels.write_path("/estimate/optimized", kMapFrame, loops->optimized);
     for (const LoopRecord& loop : loops->report.loops)
-      impl_->write("/loops", "stillpoint.Loop", loop.query_t, loop_message(loop));
+      impl_->channels.write("/loops", "stillpoint.Loop", loop.query_t, loop_message(loop));
   }
-  impl_->writer.finish();
+  impl_->channels.finish();
 }
 
 }  // namespace stillpoint::report

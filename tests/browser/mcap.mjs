@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a recording of `run --mcap` with @mcap/core, decodes every message of every channel by the schema in the file, and
+// Reads a recording of `run --mcap`, or with STORED of `store extract --mcap`, with @mcap/core, decodes every message of every channel by the schema in the file, and
 // compares types with those that Foxglove publishes, and contents with the files of the run. Run by mcap.sh.
 import assert from "node:assert/strict";
 import { open, readFile } from "node:fs/promises";
@@ -8,7 +8,7 @@ import * as support from "@mcap/support";
 import * as published from "@foxglove/schemas/jsonschema.js";
 import Ajv from "ajv";
 
-const { MCAP, RUN, SEQUENCE, IMAGES } = process.env;
+const { MCAP, RUN, SEQUENCE, IMAGES, STORED } = process.env;
 const decompressHandlers = await support.loadDecompressHandlers();
 const rows = async (file, separator = ",") =>
   (await readFile(file, "utf8")).split("\n").filter((line) => line && !line.startsWith("#")).map((line) => line.split(separator));
@@ -141,6 +141,20 @@ const times = await records(`${RUN}/timings.csv`);
 const recordedTimes = topics["/timings"].flatMap(({ frame, modules }) =>
   modules.filter(({ module }) => module !== "image_decoding").map((time) => [Number(frame), time.module, Math.round(time.ms * 1e6), time.calls]));
 assert.deepEqual(recordedTimes, times.map((row) => [Number(row.frame), row.module, Number(row.ns), Number(row.calls)]));
+
+if (STORED) {
+  assert.deepEqual(topics["/claims"].map((claim) => [Number(claim.frame), claim.status, claim.sigma_m, claim.sigma_rad]),
+    claims.map((row) => [Number(row.frame), row.status, Number(row.sigma_m), Number(row.sigma_rad)]));
+  assert.ok(topics["/claims"].some(({ sigma_m }) => sigma_m > 0));
+  assert.equal(count("/camera/image"), 3);
+  const transforms = topics["/tf"].filter(({ child_frame_id }) => child_frame_id === "camera");
+  assert.deepEqual(transforms.map(({ translation }) => translation), topics["/estimate"].map(({ pose }) => pose.position));
+  assert.equal(topics["/tf"].filter(({ child_frame_id }) => child_frame_id === "truth").length, 1);
+  assert.ok(count("/truth") > 40);
+  assert.deepEqual(topics["/truth/path"][0].poses, topics["/truth"].map(({ pose }) => pose));
+  console.log(`${channels.size} channels of a stored run, ${[...streamed.values()].reduce((a, b) => a + b)} messages`);
+  process.exit(0);
+}
 
 // Features with a label, by their colors.
 const colors = { stable: [60, 220, 60], dynamic_object: [255, 50, 40], dynamic_motion: [255, 60, 255] };

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Records a run with `run --mcap` and reads the file with the packages of the MCAP and Foxglove projects. Exits with 77 if
+# Records a run with `run --mcap`, and one of a store with `store extract --mcap`, and reads the files with the packages of the MCAP and Foxglove projects. Exits with 77 if
 # they are not installed.
 #   tests/browser/mcap.sh STILLPOINT [WORK]
 source "$(dirname "${BASH_SOURCE[0]}")/node.sh"
@@ -18,3 +18,15 @@ run plain
 run images --mcap-images --variant ablations/loop_closure
 MCAP="$work/plain.mcap" RUN="$work/plain" SEQUENCE="$work/walking" node "$here/mcap.mjs"
 MCAP="$work/images.mcap" RUN="$work/images" SEQUENCE="$work/walking" IMAGES=1 node "$here/mcap.mjs"
+
+cat >"$work/plan.toml" <<END
+title = "Stored"
+variants = ["stillpoint"]
+images = 3
+[recorded]
+sequences = ["$work/walking"]
+END
+"$program" bench "$work/plan.toml" --store "$work/store.sqlite" --out "$work/bench" >"$work/bench.log" 2>&1
+key="$("$program" store list "$work/store.sqlite" | awk 'NR == 1 { print $1 }')"
+"$program" store extract "$key" "$work/stored" --mcap --store "$work/store.sqlite" | grep -q "not in the store: inertial samples"
+MCAP="$work/stored/run.mcap" RUN="$work/stored" STORED=1 node "$here/mcap.mjs"

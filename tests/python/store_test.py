@@ -121,6 +121,18 @@ def test_metrics_are_described():
     assert metrics["ate_rmse_m"]["unit"] == "m" and metrics["ate_rmse_m"]["direction"] == "smaller is better"
 
 
+def test_an_extracted_recording_has_the_stored_poses(results, store_file, tmp_path):
+    run = results.runs()[0]
+    done = run_program("store", "extract", run.key, tmp_path / "run", "--mcap", "--store", store_file)
+    assert done.returncode == 0 and "run.mcap" in done.stdout and "not in the store" in done.stdout, done.stderr
+    for topic, stored in (("/estimate", results.trajectory(run)), ("/truth", results.truth(run))):
+        poses = eval.read_trajectory(f"{tmp_path}/run/run.mcap:{topic}")
+        assert len(poses) == len(stored) > 10
+        assert np.array_equal(poses.times_ns, stored.times_ns) and np.array_equal(poses.positions, stored.positions)
+    again = run_program("store", "extract", run.key, tmp_path / "run", "--mcap", "--store", store_file)
+    assert again.returncode == 2 and "run.mcap: exists" in again.stderr
+
+
 @pytest.mark.parametrize("content", [None, b"", b"no database"])
 def test_what_is_no_store_is_an_input_error(tmp_path, content):
     path = tmp_path / "x.sqlite"

@@ -20,6 +20,7 @@
 #include "bench/store/store.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
+#include "reports/frames/stored_recording.h"
 #include "reports/tables/data_table.h"
 #include "reports/tables/tidy_runs.h"
 
@@ -158,6 +159,7 @@ struct StoreArguments {
   std::string run;
   std::string file;
   std::vector<std::string> equal;
+  bool mcap = false;
   bool numbers = false;
   bool tidy = false;
   bool force = false;
@@ -247,10 +249,17 @@ int extract(const StoreArguments& arguments) {
   std::vector<std::string> names;
   names.reserve(files.size());
   for (const OutputFile& file : files) names.push_back(file.name);
-  require_safe_folder(arguments.file, {.names = names, .marks = {names}}, {});
-  write_files(arguments.file, files);
-  for (const OutputFile& file : files)
-    std::cout << (std::filesystem::path(arguments.file) / file.name).string() << '\n';
+  const std::filesystem::path folder = arguments.file;
+  const std::filesystem::path recording = folder / "run.mcap";
+  if (arguments.mcap && std::filesystem::exists(recording))
+    throw InputError(recording.string(), "exists; choose another folder or remove it");
+  require_safe_folder(folder, {.names = names, .marks = {names}}, {});
+  write_files(folder, files);
+  for (const OutputFile& file : files) std::cout << (folder / file.name).string() << '\n';
+  if (!arguments.mcap) return kExitOk;
+  const report::StoredRecording written = report::write_stored_recording(recording, store, run);
+  std::cout << fmt::format("{}\n  not in the store: {}; `stillpoint run --mcap` records them\n",
+                           recording.string(), fmt::join(written.missing, ", "));
   return kExitOk;
 }
 
@@ -322,21 +331,27 @@ int salvage(const StoreArguments& arguments) {
 std::vector<Command> run_subcommands(const std::shared_ptr<StoreArguments>& arguments) {
   const Option key{"KEY", "Key of the run or a prefix of it", &arguments->run};
   const Option json{"--json", report::kJsonHelp, &arguments->json};
-  return {store_subcommand({.name = "list",
-                            .summary = "List all runs, one per line",
-                            .example = "store list build/bench/store.sqlite",
-                            .options = {json}},
-                           arguments, list),
-          store_subcommand({.name = "show",
-                            .summary = "Print all data of a run",
-                            .example = "store show 8f18e31477d2f9b7",
-                            .options = {key, json}},
-                           arguments, show),
-          store_subcommand({.name = "extract",
-                            .summary = "Write trajectory, timings, result and manifest of a run as files",
-                            .example = "store extract 8f18e31477d2f9b7 /tmp/run",
-                            .options = {key, {"DIR", "Output folder", &arguments->file}}},
-                           arguments, extract)};
+  return {
+      store_subcommand({.name = "list",
+                        .summary = "List all runs, one per line",
+                        .example = "store list build/bench/store.sqlite",
+                        .options = {json}},
+                       arguments, list),
+      store_subcommand({.name = "show",
+                        .summary = "Print all data of a run",
+                        .example = "store show 8f18e31477d2f9b7",
+                        .options = {key, json}},
+                       arguments, show),
+      store_subcommand({.name = "extract",
+                        .summary = "Write trajectory, timings, result and manifest of a run as files",
+                        .example = "store extract 8f18e31477d2f9b7 /tmp/run --mcap",
+                        .options = {key,
+                                    {"DIR", "Output folder", &arguments->file},
+                                    {"--mcap",
+                                     "Also write run.mcap, a recording for Foxglove and rerun, of what the "
+                                     "store has",
+                                     &arguments->mcap}}},
+                       arguments, extract)};
 }
 
 Command salvage_command(const std::shared_ptr<StoreArguments>& arguments) {
