@@ -97,21 +97,35 @@ inline void require_field(const py::handle& object, const py::handle& name) {
   throw py::type_error("unknown option \"" + name.cast<std::string>() + "\"; expected one of: " + names);
 }
 
+/// Sets fields of options.
+/// @throws TypeError if they have no field with the name
+template <class Struct>
+void assign(Struct& options, const py::kwargs& values) {
+  const py::object self = py::cast(&options, py::return_value_policy::reference);
+  for (const auto& [key, value] : values) {
+    require_field(self, key);
+    py::setattr(self, key, value);
+  }
+}
+
+/// For options that are made in another way than by default.
+struct WithoutDefaults {};
+
 /// Defines the class of options: each field is an attribute and a keyword argument.
 template <class Struct>
 class Options : public Record<Struct> {
  public:
-  Options(py::module_& module, const char* name, const char* doc) : Record<Struct>(module, name, doc) {
+  Options(py::module_& module, const char* name, const char* doc)
+      : Options(module, name, doc, WithoutDefaults{}) {
     this->type_.def(py::init([](const py::kwargs& values) {
       auto options = std::make_unique<Struct>();
-      const py::object self = py::cast(options.get(), py::return_value_policy::reference);
-      for (const auto& [key, value] : values) {
-        require_field(self, key);
-        py::setattr(self, key, value);
-      }
+      assign(*options, values);
       return options;
     }));
   }
+
+  Options(py::module_& module, const char* name, const char* doc, WithoutDefaults)
+      : Record<Struct>(module, name, doc) {}
 
   template <class Value>
   Options& field(const char* name, Value Struct::*member, const char* doc) {

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import stillpoint
 
-MODULES = ["datasets", "eval", "odometry", "store"]
+MODULES = ["datasets", "eval", "odometry", "store", "synth"]
 FOLDER = Path(stillpoint.__file__).parent
 
 

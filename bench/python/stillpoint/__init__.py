@@ -5,6 +5,7 @@ The modules are loaded when they are first used:
   stillpoint.eval      trajectories, association, alignment, metrics and protocols
   stillpoint.store     stores of results, their statistics and comparisons
   stillpoint.datasets  sequences of any format: frames, inertial samples and truth as arrays
+  stillpoint.synth     rendered sequences with exact ground truth
   stillpoint.Odometry  the odometry, fed by a loop of yours
   stillpoint.run       a run of the odometry by the program
 """
@@ -13,7 +14,7 @@ import importlib.util
 
 from ._eval import InputError
 
-_MODULES = ("datasets", "eval", "store")
+_MODULES = ("datasets", "eval", "store", "synth")
 _FUNCTIONS = {"Odometry": "odometry", "RecordedDetector": "odometry", "load_config": "odometry", "run": "runs"}
 
 __all__ = ["InputError", "DataWarning", *_MODULES, *_FUNCTIONS]
