@@ -25,7 +25,7 @@ minimal=(
 )
 packages=(
   "${minimal[@]}"
-  make ccache
+  make ccache mold
   openimageio-tools libbz2-dev liblz4-dev
   libembree-dev libtbb-dev
   libsqlite3-dev libzstd-dev libmicrohttpd-dev libpango1.0-dev fonts-liberation
