@@ -75,8 +75,8 @@ struct RunCounts {
 /// Resources used by the process of a run.
 struct ProcessCost {
   double wall_s = 0.0;
-  double cpu_s = 0.0;  ///< user and system time of all threads
-  std::int64_t peak_memory_bytes = 0;
+  double cpu_s = 0.0;                               ///< user and system time of all threads
+  std::optional<std::int64_t> peak_memory_bytes{};  ///< nothing if the process ended before it was measured
 };
 
 /// Errors of the poses at IMU rate; see bench/model/imu_rate_metrics.h for the definitions.

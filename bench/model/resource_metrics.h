@@ -16,8 +16,8 @@ inline constexpr double kMaxQuietLoad = 0.05;  ///< more disturbs times measurab
   return m.process ? std::optional<double>(m.process->cpu_s) : std::nullopt;
 }
 [[nodiscard]] inline std::optional<double> peak_memory(const Measurements& m) {
-  return m.process ? std::optional<double>(static_cast<double>(m.process->peak_memory_bytes) / 1048576.0)
-                   : std::nullopt;
+  if (!m.process || !m.process->peak_memory_bytes) return std::nullopt;
+  return static_cast<double>(*m.process->peak_memory_bytes) / 1048576.0;
 }
 
 [[nodiscard]] inline std::optional<double> other_load(const Measurements& m) { return m.other_load; }

@@ -27,8 +27,9 @@ constexpr std::size_t kMaxMessageBytes = 65'536;
 constexpr std::int64_t kMaxBytesPerPoll = std::int64_t{1} << 20;  // a child may print faster than it is read
 constexpr std::int64_t kForkTolerance = std::int64_t{1} << 21;    // pages that fork itself touches
 constexpr std::int64_t kSmallestProcess = 200'000;  // bytes; less is measured while exec replaces the memory
-constexpr std::chrono::milliseconds kMeasurementInterval{50};
-constexpr int kPollIntervalMs = 100;    // longest delay until an exceeded limit is detected
+// Memory is measured after 1, 2, 4, ... ms, so that short processes are measured as well, and at least as
+// often as:
+constexpr std::chrono::milliseconds kLongestInterval{100};
 constexpr int kExitPollIntervalMs = 2;  // a child that closed stderr is about to exit
 
 [[noreturn]] void throw_errno(const char* what) {
@@ -129,6 +130,14 @@ std::int64_t peak_resident_bytes(pid_t pid) {
   return 0;
 }
 
+/// A pipe that exec closes; reading does not block.
+std::array<int, 2> make_pipe() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe");
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  return ends;
+}
+
 double cpu_seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -166,9 +175,8 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
   std::vector<std::string> settings = spec.environment.value_or(std::vector<std::string>{});
   const std::vector<char*> environment = pointers_to(settings);
 
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe");
-  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  const std::array<int, 2> ends = make_pipe();
+  const std::array<int, 2> execution = make_pipe();
   const Launch launch{.program = spec.program.c_str(),
                       .arguments = arguments.data(),
                       .environment = spec.environment ? environment.data() : environ,
@@ -185,9 +193,12 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
   pid_ = fork();
   if (pid_ == 0) exec_child(launch);
   close(ends[1]);
+  close(execution[1]);
   pipe_ = ends[0];
+  execution_pipe_ = execution[0];
   if (pid_ < 0) {
     close(pipe_);
+    close(execution_pipe_);
     throw_errno("fork");
   }
 }
@@ -200,6 +211,7 @@ ChildProcess::~ChildProcess() {
     }
   }
   close_pipe();
+  if (execution_pipe_ >= 0) close(execution_pipe_);
 }
 
 void ChildProcess::read_messages() {
@@ -232,9 +244,10 @@ bool ChildProcess::has_exited() const {
 
 void ChildProcess::measure_memory() {
   const auto now = std::chrono::steady_clock::now();
-  // A child that prints is polled more often; at first, it may not be executed yet.
-  if (now - std::max(measured_, start_) < kMeasurementInterval) return;
+  if (now - std::max(measured_, start_) < interval_) return;  // a child that prints is polled more often
   measured_ = now;
+  if (!is_executed()) return;
+  interval_ = std::min(2 * interval_, kLongestInterval);
   resident_ = 0;
   for (const pid_t process : family_of(pid_)) {
     resident_ += resident_bytes(process);
@@ -245,10 +258,20 @@ void ChildProcess::measure_memory() {
   }
 }
 
-std::int64_t ChildProcess::peak_memory_bytes(std::int64_t counted_by_kernel) const {
+bool ChildProcess::is_executed() {
+  char byte = 0;
+  if (execution_pipe_ >= 0 && read(execution_pipe_, &byte, 1) == 0) {
+    close(execution_pipe_);
+    execution_pipe_ = -1;
+  }
+  return execution_pipe_ < 0;
+}
+
+std::optional<std::int64_t> ChildProcess::peak_memory_bytes(std::int64_t counted_by_kernel) const {
+  if (counted_by_kernel > resident_at_fork_ + kForkTolerance) return counted_by_kernel;
   const std::int64_t measured = std::max(peak_, peak_of_descendants_);
-  const bool is_of_fork = counted_by_kernel <= resident_at_fork_ + kForkTolerance;
-  return is_of_fork && measured > 0 ? std::min(measured, counted_by_kernel) : counted_by_kernel;
+  if (measured == 0) return std::nullopt;
+  return std::min(measured, counted_by_kernel);
 }
 
 void ChildProcess::enforce_limits() {
@@ -275,7 +298,7 @@ bool ChildProcess::poll_once() {
 
 int ChildProcess::poll_timeout_ms() const {
   if (pipe_ < 0) return kExitPollIntervalMs;
-  return peak_ > 0 ? kPollIntervalMs : static_cast<int>(kMeasurementInterval.count());
+  return static_cast<int>(interval_.count());
 }
 
 void ChildProcess::terminate() const { kill(pid_, SIGTERM); }

@@ -44,9 +44,9 @@ struct ProcessResult {
   double user_s = 0.0;
   double system_s = 0.0;
   /// Of the largest of the process and its descendants. The kernel counts the copy of this process that fork
-  /// makes; a smaller child is therefore measured every 0.1 s while it runs, and one that ends within 0.05 s
-  /// has the size of this process.
-  std::int64_t peak_memory_bytes = 0;
+  /// makes; a smaller child is therefore measured while it runs, first after 1 ms and then every 2 to 100 ms.
+  /// Nothing if it ended before.
+  std::optional<std::int64_t> peak_memory_bytes{};
 };
 
 /// What starts this program again: the running executable, or the launcher of an extracted root file system
@@ -89,14 +89,17 @@ class ChildProcess {
   void close_pipe();
   [[nodiscard]] bool has_exited() const;
   void measure_memory();
-  [[nodiscard]] std::int64_t peak_memory_bytes(std::int64_t counted_by_kernel) const;
+  [[nodiscard]] bool is_executed();
+  [[nodiscard]] std::optional<std::int64_t> peak_memory_bytes(std::int64_t counted_by_kernel) const;
   void enforce_limits();
 
   ProcessSpec spec_;
   pid_t pid_ = -1;
   int pipe_ = -1;
+  int execution_pipe_ = -1;                         ///< closed by exec; -1 once it was
   std::int64_t message_bytes_ = 0;                  ///< read so far
   std::chrono::steady_clock::time_point measured_;  ///< the memory
+  std::chrono::milliseconds interval_{1};           ///< until it is measured again
   std::int64_t resident_at_fork_ = 0;               ///< of this process [byte]
   std::int64_t resident_ = 0;                       ///< of the child and its descendants, together [byte]
   std::int64_t peak_ = 0;                           ///< of the child [byte]

@@ -515,9 +515,13 @@ SystemCheck trajectory_check(const ExternalSystem& system, const RunRequest& req
                     ate_m, length_m),
         ""};
   }
-  return {"", fmt::format("{} poses for {} images, ATE {:.4f} m on a path of {:.2f} m, {:.1f} s, {:.0f} MB",
+  const std::string peak_memory =
+      process.peak_memory_bytes
+          ? fmt::format(", {:.0f} MB", 1e-6 * static_cast<double>(*process.peak_memory_bytes))
+          : "";
+  return {"", fmt::format("{} poses for {} images, ATE {:.4f} m on a path of {:.2f} m, {:.1f} s{}",
                           estimate.poses.size(), truth.frames.size(), ate_m, length_m, process.wall_s,
-                          static_cast<double>(process.peak_memory_bytes) / 1e6)};
+                          peak_memory)};
 }
 
 /// Messages of programs may contain line breaks and control characters.
