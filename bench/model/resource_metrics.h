@@ -70,7 +70,11 @@ inline constexpr MetricDescriptor kCostMetrics[] = {
      .decimals = 1,
      .source = MetricSource::kProcess,
      .protocol = kProcessProtocol,
-     .gate = MetricGate{MetricFamily::kCost, 0.05, 2.0, false},
+     .gate = MetricGate{.family = MetricFamily::kCost,
+                        .margin = 0.05,
+                        .floor = 2.0,
+                        .repeatable = false,
+                        .absent_is_good = true},
      .value = peak_memory},
     // Counted, not timed: no measurement noise, but they also change with the compiler or a library update.
     {.id = "instructions",

@@ -140,6 +140,17 @@ TEST(MissingResults, AFaultThatIsNeverRecoveredFromIsAFindingAndNoWrongPoseIsNon
   EXPECT_EQ(sides.compared().result(), ChangeClass::kMissing);
 }
 
+// A process can end before its memory is measured.
+TEST(MissingResults, ARunWithoutPeakMemoryIsNoFinding) {
+  MissingSides sides;
+  for (std::vector<StoredRun>* side : {&sides.base, &sides.head}) {
+    for (StoredRun& run : *side)
+      run.metrics.push_back({.name = "peak_memory_mb", .unit = "MB", .value = 1.7});
+  }
+  sides.head.front().metrics.pop_back();
+  EXPECT_TRUE(sides.compared().missing.empty());
+}
+
 TEST(MissingResults, AreNoFindingIfTheyAreAllowed) {
   MissingSides sides;
   for (StoredRun& run : sides.head) run.costs.clear();
