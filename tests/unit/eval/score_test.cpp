@@ -71,7 +71,7 @@ Trajectory curved_path() {
   for (int i = 0; i <= 100; ++i) {
     const double t = 0.1 * i;
     const Eigen::Quaterniond q(Eigen::AngleAxisd(0.3 * t, Eigen::Vector3d(1, 2, 3).normalized()));
-    path.poses.push_back({Timestamp{i * 40'000'000LL}, Pose{q, {t, std::sin(t), 0.2 * std::cos(2 * t)}}});
+    path.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{q, {t, std::sin(t), 0.2 * std::cos(2 * t)}}});
   }
   return path;
 }
@@ -93,7 +93,7 @@ TEST(AlignSe3, RecoversAKnownRigidTransform) {
 TEST(AlignSe3, IsNotDeterminedByALine) {
   Trajectory line;
   for (int i = 0; i < 10; ++i)
-    line.poses.push_back({Timestamp{i * 40'000'000LL}, Pose{.p = {1.0 * i, 0, 0}}});
+    line.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{.p = {1.0 * i, 0, 0}}});
   const std::optional<AteResult> result = ate(line, line);
   ASSERT_TRUE(result);
   EXPECT_LT(result->translation_m.max, 1e-12);
@@ -125,8 +125,8 @@ TEST(Rpe, MeasuresAConstantDriftPerSecond) {
   for (int i = 0; i <= 100; ++i) {
     const double t = 0.1 * i;
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.01 * t, Eigen::Vector3d::UnitX()));
-    gt.poses.push_back({Timestamp{i * 40'000'000LL}, Pose{.p = {t, 0, 0}}});
-    est.poses.push_back({Timestamp{i * 40'000'000LL}, Pose{turn, {1.02 * t, 0, 0}}});
+    gt.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{.p = {t, 0, 0}}});
+    est.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{turn, {1.02 * t, 0, 0}}});
   }
   const std::optional<RpeResult> result = rpe(gt, est);
   ASSERT_TRUE(result);
