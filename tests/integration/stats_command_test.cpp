@@ -107,6 +107,7 @@ TEST_F(StatsCommand, AblationHasTheBaseOfThePlan) {
       std::string::npos)
       << result.out;
   EXPECT_NE(result.out.find("build: newer"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("build: older"), std::string::npos) << result.out;
   const std::string reversed = stats({"ablation", "--base", "wo"}).out;
   EXPECT_NE(reversed.find("| -0.01 to -0.01 | -1.00"), std::string::npos) << reversed;
 }
