@@ -111,8 +111,9 @@ PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, d
   return result;
 }
 
-RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs, bool with_yaw,
-                               RelativeErrors recycled) {
+// Inlined as a whole: calls for each product of quaternions took an eighth of the time of `eval`.
+[[gnu::flatten]] RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs,
+                                                bool with_yaw, RelativeErrors recycled) {
   RelativeErrors errors = std::move(recycled);
   errors.translation_m.clear();
   errors.rotation_deg.clear();
