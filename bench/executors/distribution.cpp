@@ -29,6 +29,8 @@ namespace fs = std::filesystem;
 constexpr const char* kPlanFile = "plan.toml";
 constexpr const char* kBuildFile = "build";
 constexpr const char* kLockFile = "lock";
+constexpr const char* kSystemsFile = "systems";
+constexpr std::string_view kSystemPrefix = "system-";
 constexpr std::string_view kKeysPrefix = "keys-";
 constexpr std::string_view kStorePrefix = "store-";
 
@@ -51,11 +53,39 @@ std::vector<fs::path> files_with(const fs::path& folder, std::string_view prefix
   return found;
 }
 
-std::vector<std::string> keys_in(const fs::path& file) {
+std::vector<std::string> lines_of(const fs::path& file) {
   std::istringstream text(eval::read_text_file(file));
-  std::vector<std::string> keys;
-  for (std::string key; std::getline(text, key);) keys.push_back(key);
-  return keys;
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+/// Copies a description, and the files that determine its runs as far as they are below its folder; others
+/// belong to the machines.
+/// @return its path in the job folder, with its parameter sets
+std::string copy_system(const std::string& name, const fs::path& folder, std::size_t index) {
+  const fs::path file = parse_system_name(name).file;
+  if (!fs::exists(file)) return name;  // an embedded one
+  const ExternalSystem system = load_external_system(name);
+  const fs::path target = std::string(kSystemPrefix) + std::to_string(index);
+  std::vector<std::string> files = files_of(system);
+  files.push_back(fs::absolute(file).string());
+  for (const std::string& source : files) {
+    const fs::path relative = fs::path(source).lexically_relative(system.folder);
+    if (relative.empty() || *relative.begin() == "..") continue;
+    fs::create_directories((folder / target / relative).parent_path());
+    fs::copy_file(source, folder / target / relative, fs::copy_options::overwrite_existing);
+  }
+  return (target / file.filename()).string() + name.substr(file.string().size());
+}
+
+/// The descriptions in the job folder; empty if the plan has none.
+std::vector<std::string> copied_systems(const fs::path& folder) {
+  std::vector<std::string> systems;
+  if (!fs::exists(folder / kSystemsFile)) return systems;
+  for (const std::string& name : lines_of(folder / kSystemsFile))
+    systems.push_back(name.starts_with(kSystemPrefix) ? (folder / name).string() : name);
+  return systems;
 }
 
 void remove_store(const fs::path& store) {
@@ -74,6 +104,12 @@ void write_job(const fs::path& folder, const BenchPlan& plan,
   }
   fs::create_directories(folder);
   for (const fs::path& file : files_with(folder, kKeysPrefix)) fs::remove(file);
+  std::string systems;
+  for (std::size_t i = 0; i < plan.systems.size(); ++i) {
+    fs::remove_all(folder / (std::string(kSystemPrefix) + std::to_string(i)));
+    systems += copy_system(plan.systems[i], folder, i) + "\n";
+  }
+  files.push_back({kSystemsFile, systems});
   write_files(folder, files);
 }
 
@@ -81,19 +117,20 @@ std::vector<std::string> task_keys(const fs::path& folder, int task) {
   const fs::path file = keys_file(folder, task);
   if (!fs::exists(file))
     throw InputError(file.string(), "does not exist; write it with `stillpoint bench PLAN --executor`");
-  return keys_in(file);
+  return lines_of(file);
 }
 
 std::vector<std::string> all_task_keys(const fs::path& folder) {
   std::vector<std::string> all;
   for (const fs::path& file : files_with(folder, kKeysPrefix)) {
-    for (std::string& key : keys_in(file)) all.push_back(std::move(key));
+    for (std::string& key : lines_of(file)) all.push_back(std::move(key));
   }
   return all;
 }
 
 PlanMatrix job_matrix(const fs::path& folder, const std::vector<std::string>& keys) {
-  PlanMatrix matrix = expand_plan(load_plan((folder / kPlanFile).string()), build_name(), {});
+  PlanMatrix matrix =
+      expand_plan(load_plan((folder / kPlanFile).string(), copied_systems(folder)), build_name(), {});
   std::set<std::string> remaining(keys.begin(), keys.end());
   // erase returns the number of removed keys: 0 for a run of another task
   std::erase_if(matrix.runs,

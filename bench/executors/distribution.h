@@ -5,6 +5,10 @@
 ///
 /// The workers, on this or on other machines, share a job folder. It contains
 ///   plan.toml        the plan
+///   systems          paths of the descriptions of other systems, one per line, in the order of the plan;
+///   optional system-I/        the description of system I = 0, 1, ... of the plan, with its template and the
+///   files of its
+///                    command that are below its folder
 ///   build            of the program that divided the plan
 ///   keys-K           keys of the runs of task K = 1, 2, ..., one per line
 ///   store-K.sqlite   the store of task K, with its files
@@ -27,7 +31,7 @@ namespace stillpoint::bench {
 
 /// Writes the job of a plan into a folder, instead of an earlier one; existing stores remain.
 /// @param tasks keys of the runs of each task
-/// @throws InputError if the folder cannot be written
+/// @throws InputError if the folder cannot be written, or a description cannot be read
 void write_job(const std::filesystem::path& folder, const BenchPlan& plan,
                const std::vector<std::vector<std::string>>& tasks);
 

@@ -281,6 +281,7 @@ void require_ablation_base(const BenchPlan& plan) {
   std::vector<std::string> known = plan.variants;
   for (const auto* variants : {&plan.rendered.variants, &plan.recorded.variants})
     known.insert(known.end(), variants->begin(), variants->end());
+  for (const std::string& system : plan.systems) known.push_back(load_external_system(system).variant);
   const std::string& base = plan.ablation_base;
   if (base.empty() || std::find(known.begin(), known.end(), base) != known.end()) return;
   throw InputError("ablation_base \"" + base + "\" is no variant of the plan" + suggestion(base, known));
@@ -296,13 +297,13 @@ void validate_plan(const BenchPlan& plan) {
   require_renderings(plan);
   require_distinct_lists(plan);
   require_mode(plan);
-  at_place(plan, "ablation_base", [&] { require_ablation_base(plan); });
   at_place(plan, "faults", [&] { require_faults(plan); });
   at_place(plan, "expected", [&] { require_expectations(plan); });
   at_place(plan, "protocols", [&] { require_protocols(plan.protocols); });
   at_place(plan, "cores", [&] { static_cast<void>(parse_cpu_list(plan.cores)); });
   at_place(plan, "rendered.sequences", [&] { static_cast<void>(matching_presets(plan.rendered.sequences)); });
   require_systems(plan);
+  at_place(plan, "ablation_base", [&] { require_ablation_base(plan); });
   at_place(plan, "table.published", [&] {
     for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));
   });
@@ -310,7 +311,7 @@ void validate_plan(const BenchPlan& plan) {
 
 }  // namespace
 
-BenchPlan load_plan(const std::string& name) {
+BenchPlan load_plan(const std::string& name, const std::vector<std::string>& systems) {
   const TomlSource source = find_toml(name, TomlKind::kPlan);
   const std::vector<Setting> settings = parse_settings(source.text, source.path);
   BenchPlan plan = parse_plan(settings);
@@ -320,6 +321,7 @@ BenchPlan load_plan(const std::string& name) {
     plan.places[setting.key] = fmt::format("{}:{}", setting.file, setting.line);
   plan.text = source.text;
   if (plan.title.empty()) plan.title = plan.name;
+  if (!systems.empty()) plan.systems = systems;
   validate_plan(plan);
   return plan;
 }

@@ -147,10 +147,11 @@ void visit_fields(Visitor&& field, Config& config) {
 /// Reads a plan, loads each config of it, and checks its presets, sweeps, protocols, systems, processors and
 /// published tables. Recorded sequences are checked when the plan is expanded.
 /// @param name embedded name ("quick") or path of a TOML file
+/// @param systems copies of the descriptions that the plan names, in its order; empty: those that it names
 /// @throws InputError if it does not exist; with file and line of the plan for every fault of the file, an
 /// unknown name (with the nearest one), a value out of range, and a seed, variant, system, protocol or sweep
 /// value that is listed twice
-[[nodiscard]] BenchPlan load_plan(const std::string& name);
+[[nodiscard]] BenchPlan load_plan(const std::string& name, const std::vector<std::string>& systems = {});
 
 /// Parses a CPU list such as "0,2-3".
 /// @throws InputError if it is malformed, or the machine has no such processor

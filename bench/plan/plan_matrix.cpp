@@ -153,7 +153,7 @@ class PlanExpander {
     const ExternalSystem& system = matrix_.systems[index];
     std::string injected = inject(identity, fault);
     identity.system = system.name;
-    identity.variant = identity.system;
+    identity.variant = system.variant;
     identity.build = system.version;
     identity.config_hash = system.hash;
     identity.mode = "external";
@@ -359,7 +359,7 @@ PlanMatrix paired_systems(PlanMatrix runs, const SystemPair& systems, int pairs)
     for (PlannedRun* side : {&sides.base, &sides.head}) {
       const ExternalSystem& system = side->system == 0 ? systems.base : systems.head;
       side->identity.system = system.name;
-      side->identity.variant = system.name;
+      side->identity.variant = system.variant;
       side->identity.config_hash = system.hash;
       side->identity.build = system_build(system, side->system == 0);
       side->identity.repetition = repetition;

@@ -94,12 +94,48 @@ void require_source(const SystemSource& source, const Setting& setting) {
 }
 
 /// Hash of the contents that determine a run: a rebuilt program or an edited script is another system.
-/// Programs of PATH belong to the machine; a file without {here} or {bin} may be an output.
 std::string hash_of(const ExternalSystem& system, const std::string& text) {
-  std::uint64_t hash = content_hash(text);
-  const auto add_file = [&hash](const fs::path& file) {
+  std::uint64_t hash = content_hash(text + system.variant.substr(system.name.size()));
+  for (const std::string& file : files_of(system)) hash = content_hash(eval::read_text_file(file), hash);
+  return hash_text(hash);
+}
+
+constexpr std::string_view kVariantPrefix = "variant.";
+
+/// Applies the parameter sets.
+/// @param settings of the tables [variant.SET]
+void apply_sets(ExternalSystem& system, const std::vector<Setting>& settings,
+                const std::vector<std::string>& sets) {
+  std::vector<std::string> known;
+  for (const Setting& setting : settings) {
+    const std::size_t dot = setting.key.find('.', kVariantPrefix.size());
+    const std::string param = dot == std::string::npos ? "" : setting.key.substr(dot + 1);
+    if (!system.param.contains(param))
+      throw InputError(setting.file, setting.line,
+                       "\"" + setting.key +
+                           "\" sets no parameter of [param]; write [variant.SET] and below it "
+                           "a name of [param] with another value");
+    known.push_back(setting.key.substr(kVariantPrefix.size(), dot - kVariantPrefix.size()));
+  }
+  for (const std::string& set : sets) {
+    if (std::ranges::find(known, set) == known.end())
+      throw InputError(system.path, "has no table [variant." + set + "]" + suggestion(set, known));
+    const std::string prefix = std::string(kVariantPrefix) + set + ".";
+    for (const Setting& setting : settings) {
+      if (setting.key.starts_with(prefix)) system.param[setting.key.substr(prefix.size())] = text_of(setting);
+    }
+    system.variant += "+" + set;
+  }
+}
+
+}  // namespace
+
+// Programs of PATH belong to the machine; a file without {here}, {bin} or {source} may be an output.
+std::vector<std::string> files_of(const ExternalSystem& system) {
+  std::vector<std::string> files;
+  const auto add_file = [&files](const fs::path& file) {
     std::error_code ignored;
-    if (fs::is_regular_file(file, ignored)) hash = content_hash(eval::read_text_file(file), hash);
+    if (fs::is_regular_file(file, ignored)) files.push_back(file.string());
   };
   if (!system.calibration_template.empty()) add_file(fs::path(system.folder) / system.calibration_template);
   for (const std::string& word : system.command) {
@@ -108,10 +144,24 @@ std::string hash_of(const ExternalSystem& system, const std::string& text) {
     if (is_program && path.find('/') != std::string::npos) add_file(program_of(system, path));
     if (!is_program && path != word) add_file(path);
   }
-  return hash_text(hash);
+  return files;
 }
 
-}  // namespace
+SystemName parse_system_name(std::string name) {
+  SystemName result;
+  const auto is_set = [](std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+      return std::isalnum(c) != 0 || c == '_' || c == '-';
+    });
+  };
+  for (std::size_t plus = name.rfind('+'); plus != std::string::npos && is_set(name.substr(plus + 1));
+       plus = name.rfind('+')) {
+    result.sets.insert(result.sets.begin(), name.substr(plus + 1));
+    name.resize(plus);
+  }
+  result.file = std::move(name);
+  return result;
+}
 
 std::string expanded(std::string_view text, const Placeholders& values, const std::string& place) {
   std::string result;
@@ -146,12 +196,16 @@ std::string expanded(std::string_view text, const Placeholders& values, const st
   return result;
 }
 
-ExternalSystem parse_external_system(const std::string& text, const std::string& path) {
+ExternalSystem parse_external_system(const std::string& text, const std::string& path,
+                                     const std::vector<std::string>& sets) {
   ExternalSystem system;
   std::vector<Setting> own_settings;
+  std::vector<Setting> set_settings;
   for (const Setting& setting : parse_settings(text, path)) {
     if (setting.key.starts_with(kParamPrefix)) {
       system.param[setting.key.substr(kParamPrefix.size())] = text_of(setting);
+    } else if (setting.key.starts_with(kVariantPrefix)) {
+      set_settings.push_back(setting);
     } else {
       own_settings.push_back(setting);
     }
@@ -172,6 +226,8 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
                            "file of the system there, with placeholders such as {fx}");
   }
   system.path = path;
+  system.variant = system.name;
+  apply_sets(system, set_settings, sets);
   system.folder = fs::absolute(path).parent_path().string();
   system.hash_without_source = hash_of(system, text);
   if (!system.source.binary.empty())
@@ -181,11 +237,12 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
 }
 
 ExternalSystem load_external_system(const std::string& name) {
-  const TomlSource source = find_toml(name, TomlKind::kSystem);
+  const SystemName parsed = parse_system_name(name);
+  const TomlSource source = find_toml(parsed.file, TomlKind::kSystem);
   // An embedded description has no folder; the programs that it names are beside this one.
-  if (!source.embedded) return parse_external_system(source.text, source.path);
-  ExternalSystem system =
-      parse_external_system(source.text, executable_path().parent_path() / fs::path(source.path).filename());
+  if (!source.embedded) return parse_external_system(source.text, source.path, parsed.sets);
+  ExternalSystem system = parse_external_system(
+      source.text, executable_path().parent_path() / fs::path(source.path).filename(), parsed.sets);
   system.path = source.path;
   return system;
 }
@@ -232,6 +289,10 @@ trajectory = "trajectory.tum"
 # Values of {{param.NAME}}; a plan varies them by [sweep] param.NAME = [500, 1000]
 [param]
 # features = 1000
+
+# A parameter set: FILE+few names a variant of the system, for `stats ablation` and comparisons
+# [variant.few]
+# features = 300
 )",
       toml_quoted(name));
 }

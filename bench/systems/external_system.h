@@ -79,7 +79,7 @@ void visit_fields(Visitor&& field, Config& config) {
 ///   {source}       with [source]: the work tree of the commit that is measured, else the repository itself
 ///   {binary}       with [source]: the built program in {source}
 ///   {seed}, {repetition}  of the run
-///   {param.NAME}   value of NAME in the table [param], or of the sweep
+///   {param.NAME}   value of NAME in the table [param], of a parameter set, or of the sweep
 ///
 /// and in the template also those of `calibration_placeholders`.
 struct ExternalSystem {
@@ -99,6 +99,7 @@ struct ExternalSystem {
   std::string timings;  ///< in {out}: JSON with modules and threads as "timings" in result.json; may be empty
   SystemSource source;  ///< the table [source]
   std::map<std::string, std::string> param;  ///< the table [param]: values of {param.NAME}
+  std::string variant;  ///< name, and "+SET" for each parameter set that was applied: that of its runs
   // Set by load_external_system.
   std::string path;           ///< of the file, as shown in messages
   std::string folder;         ///< {here}
@@ -130,15 +131,31 @@ void visit_fields(Visitor&& field, Config& config) {
 /// Beginning of the keys of parameters, in descriptions and in sweeps of plans.
 inline constexpr std::string_view kParamPrefix = "param.";
 
-/// @param name of an embedded file, or path of one that ends in ".toml"
-/// @throws InputError with file and line for every fault of the file; if there is no such file; if name or
-/// command are missing, a placeholder is unknown, or the template cannot be read
+/// A description, and the parameter sets that are applied to it in this order.
+struct SystemName {
+  std::string file;               ///< name of an embedded file, or path
+  std::vector<std::string> sets;  ///< of the tables [variant.SET], which override values of [param]
+};
+
+/// "FILE", or "FILE+SET+SET".
+[[nodiscard]] SystemName parse_system_name(std::string name);
+
+/// @param name of an embedded file, or path of one that ends in ".toml", with parameter sets as for
+/// `parse_system_name`
+/// @throws InputError with file and line for every fault of the file; if there is no such file or set; if
+/// name or command are missing, a placeholder is unknown, or the template cannot be read
 [[nodiscard]] ExternalSystem load_external_system(const std::string& name);
 
 /// The same for a text.
 /// @param text of the description
 /// @param path of the file, as shown in messages; its folder is {here}
-[[nodiscard]] ExternalSystem parse_external_system(const std::string& text, const std::string& path);
+/// @param sets names of the parameter sets
+[[nodiscard]] ExternalSystem parse_external_system(const std::string& text, const std::string& path,
+                                                   const std::vector<std::string>& sets = {});
+
+/// The files that determine a run beside the description: its template, its program, and files of the command
+/// with {here}, {bin} or {source}. Those that do not exist are left out.
+[[nodiscard]] std::vector<std::string> files_of(const ExternalSystem& system);
 
 /// A commented description with all keys, to be edited; valid as it is.
 /// @param name of the system

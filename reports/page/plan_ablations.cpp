@@ -15,15 +15,18 @@
 namespace stillpoint::report {
 namespace {
 
-/// Runs of this odometry in a plan, outside sweeps.
-std::vector<bench::StoredRun> own_runs(const bench::StoredPlan& plan,
-                                       std::span<const bench::StoredRun> runs) {
+/// Runs of the system of the base in a plan, outside sweeps.
+std::vector<bench::StoredRun> runs_of_system(const bench::StoredPlan& plan, const std::string& base,
+                                             std::span<const bench::StoredRun> runs) {
   const std::set<std::string> keys(plan.run_keys.begin(), plan.run_keys.end());
-  std::vector<bench::StoredRun> own;
-  std::copy_if(runs.begin(), runs.end(), std::back_inserter(own), [&](const bench::StoredRun& run) {
-    return run.identity.system == "stillpoint" && run.identity.axis.empty() && keys.contains(run.key);
+  const auto of_base =
+      std::ranges::find_if(runs, [&](const bench::StoredRun& run) { return run.identity.variant == base; });
+  const std::string system = of_base == runs.end() ? "stillpoint" : of_base->identity.system;
+  std::vector<bench::StoredRun> found;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(found), [&](const bench::StoredRun& run) {
+    return run.identity.system == system && run.identity.axis.empty() && keys.contains(run.key);
   });
-  return own;
+  return found;
 }
 
 std::vector<bench::StoredRun> runs_in(const std::vector<bench::StoredRun>& runs,
@@ -60,7 +63,7 @@ PlanAblations plan_ablations(std::span<const bench::StoredPlan> plans,
       result.missing.push_back(start + "its stored text names no base variant (key ablation_base).");
       continue;
     }
-    const std::vector<bench::StoredRun> own = own_runs(plan, runs);
+    const std::vector<bench::StoredRun> own = runs_of_system(plan, *base, runs);
     const std::vector<std::string> variants = distinct(own, system_label);
     const std::vector<bench::AblationGroup> groups = bench::ablation_groups(*base, variants);
     if (groups.empty()) result.missing.push_back(start + missing_reason(variants, *base) + ".");

@@ -79,7 +79,9 @@ TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs, const std:
 }  // namespace
 
 std::string system_label(const bench::RunIdentity& identity) {
-  if (identity.system == "stillpoint") return identity.variant;
+  // The variants of another system begin with its name.
+  if (identity.system == "stillpoint" || identity.variant.starts_with(identity.system))
+    return identity.variant;
   return identity.variant.empty() ? identity.system : identity.system + " " + identity.variant;
 }
 

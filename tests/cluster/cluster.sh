@@ -57,6 +57,12 @@ fail() { echo "error: $*"; exit 1; }
 export STILLPOINT_REGISTRY="$work/registry.json" STILLPOINT_CACHE="$work/cache" STILLPOINT_DATA="$work/data"
 mkdir -p "$work/data"
 
+# The description of another system, which the workers get with the job.
+mkdir -p "$work/systems"
+printf '!/^#/ { print $1, 0, 0, 0, 0, 0, 0, 1 > "toy.tum" }\n' >"$work/systems/toy.awk"
+printf 'name = "toy"\ncommand = ["awk", "-f", "{here}/toy.awk", "{sequence}/rgb.txt"]\ntrajectory = "toy.tum"\n' \
+  >"$work/systems/toy.toml"
+
 # write_plan NAME REPETITIONS: 2 variants x 2 sequences x repetitions
 write_plan() {
   cat >"$work/$1.toml" <<PLAN
@@ -79,6 +85,17 @@ bench() {
 expect_equal() {
   "$program" store verify --equal "$work/$1.sqlite" "$work/$2.sqlite" || fail "the stores $1 and $2 differ"
   "$program" store verify --store "$work/$2.sqlite" >/dev/null || fail "the store $2 is damaged"
+}
+
+# check_systems OPTIONS...: runs of another system, whose description and script the workers get with the job
+check_systems() {
+  write_plan systems 2
+  sed -i "s|^variants.*|systems = [\"$work/systems/toy.toml\"]|" "$work/systems.toml"
+  bench systems systems_local || fail "local execution of another system: $(tail -n 3 "$work/bench-systems_local.log")"
+  bench systems systems_sent "$@" || fail "execution of another system: $(tail -n 3 "$work/bench-systems_sent.log")"
+  grep -q '4 of 4 runs executed' "$work/bench-systems_sent.log" || fail "not 4 runs of another system"
+  expect_equal systems_local systems_sent
+  echo "equal stores of another system"
 }
 
 runs_in() { "$program" store list --store "$work/$1.sqlite" 2>/dev/null | grep -cE '^[0-9a-f]{16} ' || true; }

@@ -57,6 +57,7 @@ expect_equal local slurm
 bench plan slurm --executor slurm --tasks 4 || fail "second execution"
 grep -q '0 of 8 runs executed, 8 cached' "$work/bench-slurm.log" || fail "completed runs were executed again"
 echo "equal stores: local and Slurm with 4 tasks"
+check_systems --executor slurm --tasks 4
 
 # The calling program is killed as soon as the first task has a store, then a worker is killed: the second call waits for
 # the other tasks, and executes what is missing.

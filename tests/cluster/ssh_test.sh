@@ -63,6 +63,8 @@ for login in one two; do
 done
 expect_equal local ssh
 echo "equal stores: local and 4 tasks on 2 logins"
+check_systems "${by_ssh[@]}"
+compgen -G "$work/home/one/.stillpoint/jobs/*/system-0/toy.awk" >/dev/null || fail "the script was not copied"
 
 # A recorded sequence that only this machine has is copied, once.
 sequence="$(find "$work/cache" -name request.toml -printf '%h\n' | head -n 1)"

@@ -182,6 +182,25 @@ TEST(ExternalSystem, ParametersAreSwept) {
   EXPECT_NE(repeat.out.find("All repetitions are bit-equal"), std::string::npos) << repeat.out;
 }
 
+TEST(ExternalSystem, ParameterSetsAreAnAblation) {
+  const TemporaryFolder folder;
+  write_replay(folder, "replay", "{param.error}", "[param]\nerror = 0.01\n[variant.worse]\nerror = 0.03\n");
+  const std::string file = (folder.path() / "replay.toml").string();
+  const fs::path plan = folder.write("plan.toml", "systems = [\"" + file + "\", \"" + file +
+                                                      "+worse\"]\nablation_base = \"replay\"\n[recorded]\n"
+                                                      "sequences = [\"office\"]\n");
+  const ProgramResult bench = run_here(folder, {"bench", plan.string(), "--store", store_of(folder), "--out",
+                                                (folder.path() / "out").string()});
+  EXPECT_EQ(bench.exit_code, 0) << bench.err;
+  EXPECT_NE(bench.out.find("replay+worse"), std::string::npos) << bench.out;
+  const ProgramResult ablation = run_here(folder, {"stats", "ablation", store_of(folder)});
+  EXPECT_EQ(ablation.exit_code, 0) << ablation.err;
+  EXPECT_NE(ablation.out.find("replay+worse"), std::string::npos) << ablation.out;
+  EXPECT_NE(ablation.out.find("+200.0 %"), std::string::npos) << ablation.out;  // 0.03 / 0.01 - 1
+  const std::string page = (folder.path() / "page").string();
+  EXPECT_EQ(run_here(folder, {"report", store_of(folder), "--out", page}).exit_code, 0);
+}
+
 /// Compares two descriptions in two pairs.
 ProgramResult compare_systems(const TemporaryFolder& folder, const std::string& base,
                               const std::string& head) {

@@ -135,10 +135,12 @@ struct SystemLocation {
 };
 
 std::optional<SystemLocation> system_location(const std::string& location) {
-  const std::size_t at = location.rfind(".toml@");
-  if (location.ends_with(".toml")) return SystemLocation{location, ""};
-  if (at == std::string::npos) return std::nullopt;
-  return SystemLocation{location.substr(0, at + 5), location.substr(at + 6)};
+  const std::size_t end = location.rfind(".toml");
+  if (end == std::string::npos) return std::nullopt;
+  const std::size_t at = location.find('@', end);
+  const std::string file = location.substr(0, at);
+  if (!parse_system_name(file).file.ends_with(".toml")) return std::nullopt;
+  return SystemLocation{file, at == std::string::npos ? "" : location.substr(at + 1)};
 }
 
 /// The system, of a commit with its program built.
@@ -164,9 +166,9 @@ Comparison compare_systems(const CompareArguments& arguments) {
   const ExecutedPairs executed =
       execute_pairs(paired_systems(std::move(runs), systems, pairs), arguments.store,
                     {system_build(systems.base, true), system_build(systems.head, false)});
-  const std::string name = systems.base.name == systems.head.name
-                               ? systems.base.name
-                               : systems.base.name + " -> " + systems.head.name;
+  const std::string name = systems.base.variant == systems.head.variant
+                               ? systems.base.variant
+                               : systems.base.variant + " -> " + systems.head.variant;
   const std::vector<StoredRun> base_runs = named_as(executed.base, name);
   return with_control(compare_runs(base_runs, named_as(executed.head, name), CompareSource::kPrograms),
                       control_changes(base_runs));

@@ -95,7 +95,7 @@ ProcessResult execute_limited(ProcessSpec spec, const BenchPlan& plan) {
 }
 
 std::string result_text(const RunIdentity& identity, const RunOutcome& outcome) {
-  Json json = {{"system", identity.system},
+  Json json = {{"system", identity.variant},
                {"version", identity.build},
                {"sequence", identity.sequence},
                {"status", status_name(outcome.outcome)},
@@ -131,7 +131,7 @@ int run_system(const SystemRunArguments& arguments) {
   const PlannedRun& planned = matrix.runs.at(0);
   const ExternalRun external(with_parameters(matrix.systems.front(), arguments.settings));
   const fs::path folder = arguments.out.empty() ? fs::path("build/runs") / matrix.sequences.front().name /
-                                                      folder_name(planned.identity.system)
+                                                      folder_name(planned.identity.variant)
                                                 : fs::path(arguments.out);
   require_safe_folder(folder,
                       {.names = {"result.json", "manifest.json", "program.log", "trajectory.tum", "out"},
@@ -157,7 +157,7 @@ int run_system(const SystemRunArguments& arguments) {
     files.push_back({"trajectory.tum", outcome.attachments["trajectory"]});
   write_files(folder, files);
   std::cout << fmt::format(
-      "{} {}: {}{}{}\n  {}\n", planned.identity.sequence, planned.identity.system,
+      "{} {}: {}{}{}\n  {}\n", planned.identity.sequence, planned.identity.variant,
       status_name(outcome.outcome), outcome.detail.empty() ? "" : ", ", outcome.detail,
       outcome.outcome == Outcome::kOk ? metrics_line(outcome) : (folder / "program.log").string());
   if (outcome.outcome == Outcome::kOk) std::cout << "  " << (folder / "result.json").string() << '\n';

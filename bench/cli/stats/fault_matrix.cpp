@@ -25,7 +25,7 @@ constexpr double kMaxTimeToDetect_s = 0.5;
 /// @throws InputError if a description cannot be read
 std::vector<std::string> compared_names(const BenchPlan& plan) {
   std::vector<std::string> names = plan.variants;
-  for (const std::string& system : plan.systems) names.push_back(load_external_system(system).name);
+  for (const std::string& system : plan.systems) names.push_back(load_external_system(system).variant);
   return names;
 }
 

@@ -53,6 +53,32 @@ TEST(JobFolder, ARunThatThisMachineDoesNotHaveIsAnError) {
   expect_input_error([&] { static_cast<void>(job_matrix(job, task_keys(job, 1))); }, {"build another"});
 }
 
+// The workers of another machine have only the job folder.
+TEST(JobFolder, DescriptionsTravelWithTheFilesOfTheirCommand) {
+  const TemporaryFolder folder;
+  folder.write("sys/tools/run.sh", "exit 0\n");
+  folder.write("sys/slam.toml",
+               "name = \"slam\"\ncommand = [\"sh\", \"{here}/tools/run.sh\", \"{param.n}\"]\n[param]\nn = 1\n"
+               "[variant.few]\nn = 0\n");
+  const std::string file = (folder.path() / "sys/slam.toml").string();
+  const BenchPlan plan = load_plan(
+      folder.write("p.toml", "systems = [\"" + file + "\", \"" + file +
+                                 "+few\", \"orb_pnp\"]\n[rendered]\nsequences = [\"walking_static\"]\n"));
+  const std::vector<std::string> keys = keys_of(plan);
+  const fs::path job = folder.path() / "job";
+  write_job(job, plan, {keys});
+  fs::rename(job, folder.path() / "elsewhere");
+  fs::remove_all(folder.path() / "sys");
+  const PlanMatrix matrix = job_matrix(folder.path() / "elsewhere", keys);
+  EXPECT_EQ(matrix.keys, keys);
+  ASSERT_EQ(matrix.systems.size(), 3u);
+  EXPECT_EQ(matrix.systems[1].variant, "slam+few");
+  EXPECT_TRUE(fs::exists(fs::path(matrix.systems[1].folder) / "tools/run.sh"));
+  std::ofstream(fs::path(matrix.systems[0].folder) / "tools/run.sh") << "exit 1\n";
+  expect_input_error([&] { static_cast<void>(job_matrix(folder.path() / "elsewhere", keys)); },
+                     {"system files differ"});
+}
+
 TEST(JobFolder, MergingIsIdempotentAndCompletesAnInterruptedMerge) {
   const TemporaryFolder folder;
   const fs::path job = folder.path() / "job";

@@ -49,6 +49,29 @@ TEST(ExternalDescription, NamesTheLineOfAFault) {
   expect_bad_description("name = \"s\"", {"s.toml: has no command"});
 }
 
+TEST(ExternalDescription, ParameterSetsAreVariants) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder
+          .write(
+              "a+b.toml",
+              "name = \"s\"\ncommand = [\"s\", \"{param.n}\"]\n[param]\nn = 1\nm = 2\n[variant.few]\nn = 9\n"
+              "[variant.no-m]\nm = 0\n")
+          .string();
+  const ExternalSystem plain = load_external_system(file);
+  EXPECT_EQ(plain.variant, "s");
+  const ExternalSystem both = load_external_system(file + "+few+no-m");
+  EXPECT_EQ(both.name, "s");
+  EXPECT_EQ(both.variant, "s+few+no-m");
+  EXPECT_EQ(both.param, (std::map<std::string, std::string>{{"n", "9"}, {"m", "0"}}));
+  EXPECT_NE(both.hash, plain.hash);
+  expect_input_error([&] { static_cast<void>(load_external_system(file + "+fwe")); },
+                     {"a+b.toml: has no table [variant.fwe]", "\"few\"?"});
+  const std::string begin = "name = \"s\"\ncommand = [\"s\"]\n[param]\nn = 1\n";
+  expect_bad_description(begin + "[variant.few]\nk = 1", {"s.toml:6: ", "\"variant.few.k\"", "[param]"});
+  expect_bad_description(begin + "[variant]\nn = 1", {"s.toml:6: ", "\"variant.n\"", "[variant.SET]"});
+}
+
 TEST(Placeholders, OtherBracesAreNotChanged) {
   EXPECT_EQ(expanded("{a}{a} {print $1} {} {1} {", {{"a", "{b}"}}, "p"), "{b}{b} {print $1} {} {1} {");
 }
