@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "reports/drawing/drawing_module.h"
+#include "reports/drawing/name_spans.h"
 #include "reports/drawing/theme.h"
 #include "reports/tables/text_format.h"
 
@@ -23,6 +24,49 @@ std::string points_attribute(const std::vector<Point2>& points) {
   for (const Point2& point : points) text += fmt::format("{:.2f},{:.2f} ", point.x, point.y);
   if (!text.empty()) text.pop_back();
   return "points=\"" + text + "\"";
+}
+
+double plain_text_width(const std::string& text, double size) {
+  if (const DrawingModule* const module = drawing_module())
+    return module->text_width(text, size, theme::kFonts);
+  constexpr double kMeanWidth = 0.56;  // of a digit of Helvetica, per font size
+  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
+  return kMeanWidth * size * static_cast<double>(std::ranges::count_if(text, begins_character));
+}
+
+/// The marks of a drawing, a label for each span of a name. Horizontal texts only: names are.
+std::vector<Mark> marks_of_spans(const std::vector<Mark>& marks) {
+  std::vector<Mark> expanded;
+  expanded.reserve(marks.size());
+  for (const Mark& mark : marks) {
+    const Label* const label = std::get_if<Label>(&mark);
+    const std::vector<NameSpan> spans =
+        label == nullptr || label->upwards ? std::vector<NameSpan>{} : name_spans(label->text);
+    if (spans.empty() || (spans.size() == 1 && spans[0].text == label->text)) {
+      expanded.push_back(mark);
+      continue;
+    }
+    const double width = text_width(label->text, label->size);
+    Label part = *label;
+    part.anchor = Anchor::kLeft;
+    part.at.x -= label->anchor == Anchor::kLeft     ? 0.0
+                 : label->anchor == Anchor::kMiddle ? 0.5 * width
+                                                    : width;
+    for (const NameSpan& span : spans) {
+      part.text = span.text;
+      part.size = span.scale * label->size;
+      part.at.y = label->at.y - span.rise * label->size;
+      expanded.push_back(part);
+      part.at.x += plain_text_width(part.text, part.size);
+    }
+  }
+  return expanded;
+}
+
+/// As it is written to a file.
+Drawing with_spans(Drawing drawing) {
+  drawing.marks = marks_of_spans(drawing.marks);
+  return drawing;
 }
 
 struct SvgWriter {
@@ -62,7 +106,7 @@ std::string svg_text(const Drawing& drawing) {
       drawing.width, drawing.height, unit, theme::kFonts);
   if (!drawing.title.empty()) out += fmt::format("<title>{}</title>\n", escape_html(drawing.title));
   out += "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
-  for (const Mark& mark : drawing.marks) std::visit(SvgWriter{out}, mark);
+  for (const Mark& mark : marks_of_spans(drawing.marks)) std::visit(SvgWriter{out}, mark);
   return out + "</svg>\n";
 }
 
@@ -92,11 +136,13 @@ const DrawingModule& require_drawing_module(const char* format) {
 }  // namespace
 
 std::string pdf_text(std::span<const Drawing> drawings) {
-  return require_drawing_module("PDF").pdf(drawings, theme::kFonts);
+  std::vector<Drawing> pages;
+  for (const Drawing& drawing : drawings) pages.push_back(with_spans(drawing));
+  return require_drawing_module("PDF").pdf(pages, theme::kFonts);
 }
 
 std::string png_bytes(const Drawing& drawing, double scale) {
-  std::string bytes = require_drawing_module("PNG").png(drawing, scale, theme::kFonts);
+  std::string bytes = require_drawing_module("PNG").png(with_spans(drawing), scale, theme::kFonts);
   if (bytes.empty()) {
     throw InputError(
         "PNG", fmt::format("{:.0f} x {:.0f} pixels are too many; draw fewer figures, or write .pdf or .svg",
@@ -106,11 +152,9 @@ std::string png_bytes(const Drawing& drawing, double scale) {
 }
 
 double text_width(const std::string& text, double size) {
-  if (const DrawingModule* const module = drawing_module())
-    return module->text_width(text, size, theme::kFonts);
-  constexpr double kMeanWidth = 0.56;  // of a digit of Helvetica, per font size
-  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
-  return kMeanWidth * size * static_cast<double>(std::ranges::count_if(text, begins_character));
+  double width = 0.0;
+  for (const NameSpan& span : name_spans(text)) width += plain_text_width(span.text, span.scale * size);
+  return width;
 }
 
 namespace {

@@ -50,7 +50,7 @@ enum class Anchor { kLeft, kMiddle, kRight };
 /// One line of text; `at` is on its baseline.
 struct Label {
   Point2 at;
-  std::string text;    ///< UTF-8
+  std::string text;    ///< UTF-8; horizontal ones with the notation of name_spans.h
   double size = 10.0;  ///< height of the font
   Anchor anchor = Anchor::kLeft;
   Color color;

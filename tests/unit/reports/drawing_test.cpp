@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "datasets/io/image_io.h"
 #include "reports/drawing/drawing.h"
+#include "reports/drawing/name_spans.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -32,6 +34,46 @@ TEST(SvgText, HasDashesAndTextThatRunsUpwards) {
   const std::string svg = svg_text(drawing);
   EXPECT_NE(svg.find("stroke-dasharray=\"3.5 2\""), std::string::npos);
   EXPECT_NE(svg.find("transform=\"rotate(-90 2.00 5.00)\">up</text>"), std::string::npos);
+}
+
+/// Spans as text: "_" or "^" before a lowered or raised one, "'" before a smaller one.
+std::string spans_text(const std::string& name) {
+  std::string text;
+  for (const NameSpan& span : name_spans(name)) {
+    text += span.rise < 0.0 ? "[_" : span.rise > 0.0 ? "[^" : span.scale < 1.0 ? "['" : "[";
+    text += span.text + "]";
+  }
+  return text;
+}
+
+TEST(NameSpans, DrawIndicesExponentsGreekLettersAndSmallCapitals) {
+  EXPECT_EQ(spans_text("$x_1$ and $y^{ij}$"), "[x][_1][ and y][^ij]");
+  EXPECT_EQ(spans_text("$\\alpha = -2 \\times \\Sigma_k$"), "[α=−2×Σ][_k]");
+  EXPECT_EQ(spans_text("\\textsc{Orb} a\\_b \\& c"), "[O]['RB][ a_b & c]");
+  EXPECT_EQ(spans_text("$v_\\text{max}$"), "[v][_max]");
+}
+
+TEST(NameSpans, KeepAnythingElse) {
+  for (const char* name :
+       {"a_b^c", "5 $ each", "$x", "\\foo{x}", "C:\\data", "$x_$", "\\textsc{x", "a}$x$", "{a}"})
+    EXPECT_EQ(spans_text(name), std::string("[") + name + "]");
+  const std::string deep = "$" + std::string(100, '{') + std::string(100, '}') + "$";
+  EXPECT_EQ(spans_text(deep), "[" + deep + "]");
+}
+
+TEST(SvgText, PlacesTheSpansOfANameOneAfterTheOther) {
+  Drawing drawing{.width = 100.0, .height = 20.0, .marks = {}};
+  drawing.marks.push_back(Label{{50.0, 10.0}, "$x_1$", 10.0, Anchor::kRight, {}});
+  const double x = text_width("x", 10.0);
+  const double index = text_width("1", 7.0);
+  EXPECT_DOUBLE_EQ(text_width("$x_1$", 10.0), x + index);
+  const std::string svg = svg_text(drawing);
+  EXPECT_NE(svg.find(fmt::format("<text x=\"{:.2f}\" y=\"10.00\" font-size=\"10.00\"", 50.0 - x - index)),
+            svg.npos)
+      << svg;
+  EXPECT_NE(svg.find(fmt::format("<text x=\"{:.2f}\" y=\"11.50\" font-size=\"7.00\"", 50.0 - index)),
+            svg.npos)
+      << svg;
 }
 
 TEST(PdfText, HasAPageOfTheSizeOfEachDrawing) {
