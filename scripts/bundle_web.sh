@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes reports/web/vendor/d3-flamegraph.iife.min.js and its licences anew from npm. Only for who changes a version
-# in reports/web/vendor/package.json: the bundle is checked in, and npm is needed only to rebuild it.
+# Makes the bundles in reports/web/vendor and their licenses anew from npm. Only for who changes a version in
+# reports/web/vendor/package.json: the bundles are checked in, and npm is needed only to rebuild them. three.js is
+# stored as the page contains it: compressed, and as text.
 #   scripts/bundle_web.sh
 set -euo pipefail
 vendor="$(cd "$(dirname "${BASH_SOURCE[0]}")/../reports/web/vendor" && pwd)"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
-cp "$vendor"/package.json "$vendor"/package-lock.json "$vendor"/flame_bundle.js "$work"
+cp "$vendor"/package.json "$vendor"/package-lock.json "$vendor"/*_bundle.js "$work"
 npm ci --prefix "$work" --no-audit --no-fund
-"$work/node_modules/.bin/esbuild" "$work/flame_bundle.js" --bundle --minify --format=iife --global-name=d3flame \
-  --legal-comments=none --loader:.css=empty --outfile="$vendor/d3-flamegraph.iife.min.js"
+bundle() { "$work/node_modules/.bin/esbuild" "$work/$1" --bundle --minify --format=iife --global-name="$2" --legal-comments=none --loader:.css=empty; }
+bundle flame_bundle.js d3flame >"$vendor/d3-flamegraph.iife.min.js"
+bundle three_bundle.js THREE | gzip -9 -n | base64 -w 0 >"$vendor/three.iife.min.js.gz.base64"
+cp "$work/node_modules/three/LICENSE" "$vendor/LICENSE.three"
 cp "$work/node_modules/d3-flame-graph/LICENSE" "$vendor/LICENSE.d3-flame-graph"
 # The modules of D3 share one text, but for d3-ease and internmap.
 {

@@ -149,6 +149,31 @@ std::vector<StoredLoop> parse_loops(std::string_view text, const std::string& pl
 
 namespace {
 
+constexpr std::string_view kLandmarkHeader = "x,y,z,dynamic";
+
+}  // namespace
+
+std::string landmark_text(std::span<const LandmarkSample> landmarks) {
+  std::string text = std::string(kLandmarkHeader) + "\n";
+  for (const LandmarkSample& landmark : landmarks)
+    text += fmt::format("{:.3f},{:.3f},{:.3f},{}\n", landmark.p_w.x(), landmark.p_w.y(), landmark.p_w.z(),
+                        landmark.dynamic ? 1 : 0);
+  return text;
+}
+
+std::vector<LandmarkSample> parse_landmarks(std::string_view text, const std::string& place) {
+  std::vector<LandmarkSample> landmarks;
+  CsvRows rows{.place = place, .header = kLandmarkHeader};
+  rows.for_each_row(text, [&](std::string_view row) {
+    LandmarkSample& landmark = landmarks.emplace_back();
+    for (double& value : landmark.p_w) value = rows.real(cut_front(row, ','));
+    landmark.dynamic = rows.number(row) != 0;
+  });
+  return landmarks;
+}
+
+namespace {
+
 constexpr std::string_view kStatusHeader = "frame,t_ns,status,segment,x,y,z,qx,qy,qz,qw,sigma_m,sigma_rad";
 
 FrameClaim claim_of(const CsvRows& rows, std::string_view text) {

@@ -52,6 +52,19 @@ struct StoredLoop {
 /// @throws InputError for a malformed text
 [[nodiscard]] std::vector<StoredLoop> parse_loops(std::string_view text, const std::string& place);
 
+/// A row of landmarks.csv: a feature with measured depth, in the world of the odometry [m].
+struct LandmarkSample {
+  Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
+  bool dynamic = false;
+};
+
+/// Text of landmarks.csv.
+[[nodiscard]] std::string landmark_text(std::span<const LandmarkSample> landmarks);
+
+/// @param place name of the text in error messages
+/// @throws InputError for a malformed text
+[[nodiscard]] std::vector<LandmarkSample> parse_landmarks(std::string_view text, const std::string& place);
+
 /// A row of status.csv.
 struct FrameClaim {
   std::int64_t frame = 0;

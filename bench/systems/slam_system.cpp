@@ -28,10 +28,10 @@ struct StoredFile {
   const char* file;
   const char* kind;
 };
-constexpr StoredFile kStoredFiles[] = {{"trajectory.tum", "trajectory"}, {"timings.csv", "timings"},
-                                       {"frames.csv", "frames"},         {"counters.csv", "counters"},
-                                       {"status.csv", "claims"},         {"stacks.folded", "stacks"},
-                                       {"result.json", "result"},        {"loops.csv", "loops"}};
+constexpr StoredFile kStoredFiles[] = {
+    {"trajectory.tum", "trajectory"}, {"timings.csv", "timings"}, {"frames.csv", "frames"},
+    {"counters.csv", "counters"},     {"status.csv", "claims"},   {"stacks.folded", "stacks"},
+    {"result.json", "result"},        {"loops.csv", "loops"},     {"landmarks.csv", "landmarks"}};
 
 std::string message_of(const ProcessResult& process) {
   const std::string line = last_line(process.messages);

@@ -168,8 +168,9 @@ std::string commit_html(const bench::CommitHistory& history, const bench::Histor
 namespace {
 
 constexpr std::size_t kMaxMembers = 20;  // of a group that are listed individually
-constexpr std::string_view kDashboardScripts[] = {"vendor/uPlot.iife.min.js", "unpack.js", "tables.js",
-                                                  "dashboard/history_charts.js", "dashboard/dashboard.js"};
+constexpr std::string_view kDashboardScripts[] = {
+    "vendor/uPlot.iife.min.js", "unpack.js", "tables.js", "legend.js", "dashboard/history_charts.js",
+    "dashboard/dashboard.js"};
 
 std::string commit_link(const bench::CommitHistory& history, std::size_t commit) {
   const bench::Commit& target = history.commits[commit];

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/model/run_csv.h"
 #include "core/base/error.h"
 #include "core/base/timestamp.h"
 #include "core/types/odometry_update.h"
@@ -89,8 +88,9 @@ class SeriesTable {
   std::vector<SeriesColumn> columns_;
 };
 
-void fill_path(SeriesTable& table, const std::vector<Timestamp>& stamps, const Trajectory& path,
-               const Trajectory& truth) {
+/// @return the alignment to the ground truth
+eval::Similarity fill_path(SeriesTable& table, const std::vector<Timestamp>& stamps, const Trajectory& path,
+                           const Trajectory& truth) {
   eval::Similarity S_w_v;
   eval::Evaluation evaluation;
   if (!truth.poses.empty() && !path.poses.empty()) {
@@ -100,10 +100,14 @@ void fill_path(SeriesTable& table, const std::vector<Timestamp>& stamps, const T
   for (const StampedPose& pose : path.poses) {
     const std::optional<std::size_t> frame = index_of(stamps, pose.t);
     if (!frame) continue;
-    const Eigen::Vector3d position = S_w_v * pose.T_w_f.p;
-    table.set("x", *frame, position.x());
-    table.set("y", *frame, position.y());
-    table.set("z", *frame, position.z());
+    const Pose aligned = S_w_v * pose.T_w_f;
+    table.set("x", *frame, aligned.p.x());
+    table.set("y", *frame, aligned.p.y());
+    table.set("z", *frame, aligned.p.z());
+    const double sign = aligned.q.w() < 0.0 ? -1.0 : 1.0;
+    table.set("qx", *frame, sign * aligned.q.x());
+    table.set("qy", *frame, sign * aligned.q.y());
+    table.set("qz", *frame, sign * aligned.q.z());
   }
   for (const eval::PoseError& error : evaluation.per_pose) {
     const std::optional<std::size_t> frame = index_of(stamps, error.t);
@@ -111,6 +115,18 @@ void fill_path(SeriesTable& table, const std::vector<Timestamp>& stamps, const T
     table.set("error_m", *frame, error.translation_m);
     table.set("error_deg", *frame, error.rotation_deg);
   }
+  return S_w_v;
+}
+
+/// Accuracy runs of this odometry have landmarks if their plan requests images.
+std::vector<bench::LandmarkSample> aligned_landmarks(const bench::Store& store, const bench::StoredRun& run,
+                                                     const eval::Similarity& S_w_v) {
+  const std::string text = store.attachment(run, "landmarks");
+  if (text.empty()) return {};
+  std::vector<bench::LandmarkSample> landmarks = bench::parse_landmarks(text, "landmarks of run " + run.key);
+  for (bench::LandmarkSample& landmark : landmarks) landmark.p_w = S_w_v * landmark.p_w;
+  std::ranges::stable_partition(landmarks, [](const auto& landmark) { return !landmark.dynamic; });
+  return landmarks;
 }
 
 /// Position of a status in `OdometryStatus`; NaN for the names of other systems.
@@ -188,7 +204,8 @@ RunSeries run_series(const bench::Store& store, const bench::StoredRun& run) {
   series.images = images_of(run, counters);
   SeriesTable table(stamps.size());
   const Trajectory truth = store.truth(run);
-  fill_path(table, stamps, path, truth);
+  const eval::Similarity S_w_v = fill_path(table, stamps, path, truth);
+  series.landmarks = aligned_landmarks(store, run, S_w_v);
   fill_worst(series, table, stamps, eval::strict_matches(truth, path));
   fill_counters(table, counters);
   fill_claims(table, store, run);
@@ -243,6 +260,9 @@ RunSeries thinned(const RunSeries& series, std::size_t frames) {
     SeriesColumn& own = thin.columns.emplace_back(SeriesColumn{column.name, {}});
     for (const std::size_t frame : thin.numbers) own.values.push_back(column.values[frame]);
   }
+  const std::size_t step = (series.landmarks.size() + frames - 1) / frames;
+  for (std::size_t i = 0; i < series.landmarks.size(); i += step)
+    thin.landmarks.push_back(series.landmarks[i]);
   for (const std::size_t frame : series.worst) thin.worst.push_back(indices.at(frame));
   for (const auto& [frame, kind] : series.images) thin.images[indices.at(frame)] = kind;
   return thin;

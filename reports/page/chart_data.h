@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/model/run_csv.h"
 #include "bench/store/store.h"
 
 namespace stillpoint::report {
@@ -32,20 +33,22 @@ struct SeriesColumn {
 struct RunSeries {
   double start_s = 0.0;     ///< stamp of the first frame
   std::vector<double> t_s;  ///< since the first frame
-  /// x, y, z [m] aligned to the ground truth (unaligned without one), error_m, error_deg, three_sigma_m and
-  /// three_sigma_deg (claimed, along the least certain direction), frame_to_frame_error_m (see
-  /// eval/metrics/rpe.h), features, landmarks, dynamic (fraction of the features), status
-  /// (position in `OdometryStatus`), ms:MODULE. Empty columns are omitted.
+  /// x, y, z [m] of the camera aligned to the ground truth (unaligned without one), qx, qy, qz of its
+  /// rotation (a unit quaternion with qw >= 0), error_m, error_deg, three_sigma_m and three_sigma_deg
+  /// (claimed, along the least certain direction), frame_to_frame_error_m (see eval/metrics/rpe.h), features,
+  /// landmarks, dynamic (fraction of the features), status (position in `OdometryStatus`), ms:MODULE. Empty
+  /// columns are omitted.
   std::vector<SeriesColumn> columns;
   /// Indices into `t_s` by falling frame-to-frame error: the frames that have an image, else the 20 worst.
   std::vector<std::size_t> worst;
-  std::vector<FaultBand> faults;              ///< injected ones
-  std::vector<std::size_t> numbers;           ///< indices of the frames before thinning; empty: all frames
-  std::map<std::size_t, std::string> images;  ///< attachment kind by index into `t_s`
+  std::vector<FaultBand> faults;                 ///< injected ones
+  std::vector<std::size_t> numbers;              ///< indices of the frames before thinning; empty: all frames
+  std::map<std::size_t, std::string> images;     ///< attachment kind by index into `t_s`
+  std::vector<bench::LandmarkSample> landmarks;  ///< aligned like the positions, static ones first
 };
 
-/// The series with about `frames` frames: equal steps, every frame in which the status changes, and all of
-/// `worst` and `images`, whose indices follow.
+/// The series with about `frames` frames, and at most as many landmarks: equal steps, every frame in which
+/// the status changes, and all of `worst` and `images`, whose indices follow.
 [[nodiscard]] RunSeries thinned(const RunSeries& series, std::size_t frames);
 
 /// @throws InputError if files of the run are missing or damaged

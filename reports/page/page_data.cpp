@@ -196,6 +196,19 @@ Json faults_json(const std::vector<FaultBand>& faults) {
   return list;
 }
 
+/// Positions, and how many of them, the first ones, are static.
+Json landmarks_json(const std::vector<bench::LandmarkSample>& landmarks) {
+  std::array<std::vector<double>, 3> p;
+  for (const bench::LandmarkSample& landmark : landmarks) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      p[static_cast<std::size_t>(axis)].push_back(landmark.p_w(axis));
+  }
+  return {{"static", std::ranges::count(landmarks, false, &bench::LandmarkSample::dynamic)},
+          {"x", packed_series(p[0])},
+          {"y", packed_series(p[1])},
+          {"z", packed_series(p[2])}};
+}
+
 Json series_json(const RunSeries& series, Json loops) {
   Json columns = Json::object();
   for (const SeriesColumn& column : series.columns)
@@ -204,6 +217,7 @@ Json series_json(const RunSeries& series, Json loops) {
       {"start", series.start_s}, {"frames", series.t_s.size()}, {"t", packed_series(series.t_s)},
       {"worst", series.worst},   {"loops", std::move(loops)},   {"faults", faults_json(series.faults)},
       {"columns", columns}};
+  if (!series.landmarks.empty()) json["landmarks"] = landmarks_json(series.landmarks);
   if (!series.numbers.empty())
     json["numbers"] = packed_series(std::vector<double>(series.numbers.begin(), series.numbers.end()));
   return json;

@@ -164,15 +164,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kLicenses[] = {"vendor/LICENSE.uPlot", "vendor/LICENSE.d3-flame-graph",
-                                     "vendor/LICENSE.d3"};
+                                     "vendor/LICENSE.d3", "vendor/LICENSE.three"};
 constexpr std::string_view kScripts[] = {"vendor/uPlot.iife.min.js",
                                          "vendor/d3-flamegraph.iife.min.js",
                                          "unpack.js",
                                          "url_state.js",
                                          "tables.js",
+                                         "legend.js",
                                          "charts.js",
                                          "curves.js",
                                          "paths.js",
+                                         "scene.js",
                                          "inspector.js",
                                          "histograms.js",
                                          "matrix.js",
@@ -300,6 +302,12 @@ std::string embedded_runs_html(const PageData& data) {
   return text;
 }
 
+/// three.js, compressed; decoded by scene.js when it is first used.
+std::string scene_library_html() {
+  return fmt::format("<script type=\"application/octet-stream\" id=\"three\">{}</script>\n",
+                     web_file("vendor/three.iife.min.js.gz.base64"));
+}
+
 std::string licenses_html() {
   std::string text;
   for (const char* name : kLicenses) text += preformatted(std::string(web_file(name))) + "\n";
@@ -325,7 +333,8 @@ std::string page_html(const bench::Store& store, const ReportSubject& subject, c
        {"plans", plans_html(store, subject)},
        {"licenses", licenses_html()},
        {"connections", embeds ? "" : "; connect-src 'self'"},
-       {"data", data_html(data, subject, tables) + (embeds ? embedded_runs_html(data) : "")},
+       {"data",
+        data_html(data, subject, tables) + (embeds ? embedded_runs_html(data) : "") + scene_library_html()},
        {"scripts", scripts_html(kScripts)}});
 }
 

@@ -7,7 +7,9 @@
 
   page.axes = function (label) {
     const axis = { stroke: page.color("faint"), grid: { stroke: page.color("line"), width: 1 }, ticks: { stroke: page.color("line") } };
-    return [{ ...axis, label: "time [s]", labelSize: 18, size: 34 }, { ...axis, label, size: 62 }];
+    // uPlot rounds to three decimals, so that small ticks would repeat.
+    const values = (u, ticks) => ticks.map((tick) => Number(tick.toPrecision(10)).toString());
+    return [{ ...axis, values, label: "time [s]", labelSize: 18, size: 34 }, { ...axis, values, label, size: 62 }];
   };
 
   page.number = (u, value) => (value === null || value === undefined ? "-" : Number(value.toPrecision(4)).toString());
@@ -126,7 +128,7 @@
           setScale: [(u, key) => { if (key === "x" && plots.includes(u)) zoomAll(u.scales.x.min, u.scales.x.max); }],
         },
       };
-      plots.push(new uPlot(options, [series.t, ...chart.data], figure));
+      plots.push(page.plot(options, [series.t, ...chart.data], figure));
     }
     return {
       plots,

@@ -5,14 +5,14 @@
   const byId = (id) => document.getElementById(id);
   const MAX_RUNS = 8, BINS = 800;
   const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
-  const state = { runs: [], time: 0, end: 0, plot: null, path: null, moving: false };
+  const state = { runs: [], time: 0, end: 0, plot: null, moving: false, paths: [], scene: null, shows: new Set() };
 
   const dash = (i) => DASHES[i % DASHES.length];
   const color = (i) => page.color("c" + (i % page.LINE_COLORS));
   const series = (i) => page.series(state.runs[i]);
   const info = (i) => page.index.runs[state.runs[i]];
   const frameAt = (i, time) => page.nearest(series(i).t, time);
-  const text = (value) => (value === null || value === undefined ? "n/a" : Number(value.toPrecision(4)).toString());
+  const text = (value) => (value === null || value === undefined ? "-" : Number(value.toPrecision(4)).toString());
 
   // Names without what all runs share.
   function names() {
@@ -42,15 +42,61 @@
   }
 
   // --- paths ---
-  function drawPath() {
-    const canvas = byId("compare-path"), lines = [], truths = new Set();
+  // Paths of the runs, and first the ground truths; those of the runs are in their order.
+  function comparedPaths() {
+    const runs = [], truths = new Map();
     state.runs.forEach((run, i) => {
-      const own = series(i), truth = page.truth(run, own.start);
-      if (truth && !truths.has(info(i).truth)) { truths.add(info(i).truth); lines.unshift({ x: truth.x, y: truth.y, color: page.color("ink"), dash: [6, 5], width: 1.2 }); }
-      if (own.columns.x) lines.push({ x: own.columns.x, y: own.columns.y, color: color(i), dash: dash(i), width: 1.8, at: frameAt(i, state.time) });
+      const own = series(i), { x, y, z, qx, qy, qz, error_m: error } = own.columns, truth = page.truth(run, own.start);
+      if (truth) truths.set(info(i).truth, { ...truth, color: page.color("ink"), dash: [6, 5], width: 1.2 });
+      if (x) runs.push({ x, y, z, t: own.t, q: { x: qx, y: qy, z: qz }, error, loops: own.loops, landmarks: own.landmarks, color: color(i), dash: dash(i), width: 1.8 });
     });
-    byId("compare-paths").hidden = !lines.length;
-    if (lines.length) page.drawPaths(canvas, lines);
+    return [...truths.values(), ...runs];
+  }
+
+  const frameOf = (path) => (path.q ? page.nearest(path.t, state.time) : undefined);
+
+  function drawPlan() {
+    if (state.paths.length) page.drawPaths(byId("compare-path"), state.paths.map((path) => ({ ...path, at: frameOf(path) })));
+  }
+
+  function drawScene() {
+    const eye = (page.stateOf("eye") || "").split(" ").map(Number), { scene, shows } = state;
+    const largest = scene.show(state.paths, shows, eye.length === 6 && eye.every(Number.isFinite) ? eye : null);
+    byId("path-caption").textContent = `3-D, z up; squares of ${text(scene.cell)} m; dashed: ground truth; ball: position at the time`
+      + (shows.has("error") ? `; violet to yellow: error 0 to ${text(largest)} m` : "") + (shows.has("loops") && state.paths.some((path) => path.loops && path.loops.length) ? "; loops: solid accepted, dashed refused" : "")
+      + (shows.has("landmarks") && state.paths.some((path) => path.landmarks) ? "; points: features, gray static, red dynamic" : "")
+      + ". Drag to turn, with the right button to move, wheel to zoom, click a path to select its time. Keys: arrows turn, with shift move, + and - zoom, 0 resets.";
+  }
+
+  function pointPaths() {
+    if (state.scene && state.shows.has("3d")) state.scene.point(state.paths.map(frameOf));
+    else drawPlan();
+  }
+
+  // Shows the chosen view; the top view until the library of the other one is there, or if the browser cannot show it.
+  function showPaths() {
+    const wants = state.shows.has("3d"), has = Boolean(wants && state.scene);
+    byId("compare-view").value = wants ? "3d" : "plan";
+    byId("scene-options").hidden = byId("compare-scene").hidden = !has;
+    byId("compare-path").hidden = has;
+    byId("compare-paths").hidden = !state.paths.length;
+    for (const box of byId("scene-options").querySelectorAll("input")) {
+      box.checked = state.shows.has(box.value);
+      box.parentElement.hidden = !state.paths.some((path) => ({ error: path.error, cameras: path.q, loops: path.loops && path.loops.length, landmarks: path.landmarks })[box.value]);
+    }
+    if (has) drawScene(); else byId("path-caption").textContent = "Top view: x to the right, y up [m]; dashed: ground truth; dot: position at the time";
+    pointPaths();
+    if (!wants || has) return;
+    page.pathScene(byId("compare-scene"), (time) => setTime(time, false), (eye) => page.setState({ eye: eye.map((value) => value.toFixed(2)).join(" ") }))
+      .then((scene) => { state.scene = state.scene || scene; }, (error) => { byId("scene-problem").textContent = error.message; state.shows.delete("3d"); })
+      .then(showPaths);
+  }
+
+  // What the address names of `view`: "3d" and what is drawn besides the paths.
+  function chooseView(shows) {
+    state.shows = shows;
+    page.setState({ view: shows.has("3d") ? [...shows].join(" ") : null, ...(shows.has("3d") ? {} : { eye: null }) });
+    showPaths();
   }
 
   // --- error over time ---
@@ -76,7 +122,7 @@
     const times = Array.from({ length: count }, (_, i) => (i * state.end) / (count - 1 || 1));
     place.append(page.element("figcaption", {}, "Position error after alignment (ATE)" + (most > BINS ? "; largest of each " + (state.end / BINS).toFixed(2) + " s" : "")));
     const lines = drawn.map((i) => page.line(own[i] + " [m]", "c" + (i % page.LINE_COLORS), { dash: dash(i), spanGaps: true }));
-    state.plot = new uPlot({
+    state.plot = page.plot({
       width: place.clientWidth || 900, height: 200, cursor: { drag: { x: true, y: false } }, scales: { x: { time: false } }, axes: page.axes("m"),
       series: [{ label: "time [s]", value: page.number }, ...lines],
       hooks: { setCursor: [(u) => { if (u.cursor.left >= 0 && u.cursor.idx !== null) setTime(times[u.cursor.idx], true); }], ready: [pointAt] },
@@ -125,7 +171,8 @@
     const lines = body.createTBody();
     for (const [name, title, values] of rows) {
       const row = page.element("tr");
-      row.append(page.element("th", { scope: "row", title }, name), ...values.map((value, i) => page.element("td", { "data-label": own[i] }, value)));
+      row.append(page.element("th", { scope: "row", title }, name), ...values.map((value, i) => page.element("td", { "data-label": own[i] })));
+      values.forEach((value, i) => row.cells[i + 1].append(value));
       lines.append(row);
     }
     byId(place).replaceChildren(body);
@@ -136,7 +183,7 @@
     const known = [...new Set(all.flatMap((metrics) => [...metrics.keys()]))];
     return known.map((name) => {
       const { unit } = all.find((metrics) => metrics.has(name)).get(name);
-      return [name + (unit ? " [" + unit + "]" : ""), page.index.tooltips[name] || "", all.map((metrics) => (metrics.has(name) ? text(metrics.get(name).value) : "n/a"))];
+      return [name + (unit ? " [" + unit + "]" : ""), page.index.tooltips[name] || "", all.map((metrics) => (metrics.has(name) && metrics.get(name).value !== null ? text(metrics.get(name).value) : page.missing("the run has no value of this metric")))];
     });
   }
 
@@ -146,7 +193,7 @@
     const modules = [...new Set(state.runs.flatMap((_, i) => Object.keys(series(i).columns).filter((name) => name.startsWith("ms:"))))];
     return modules.map((name) => [name.slice(3) + " [ms]", "Median time per frame in which the module ran", state.runs.map((_, i) => {
       const values = finite(series(i).columns[name] || []);
-      return values.length ? text(values[Math.floor((values.length - 1) / 2)]) : "n/a";
+      return values.length ? text(values[Math.floor((values.length - 1) / 2)]) : page.missing("the module was not executed in this run");
     })]);
   }
 
@@ -196,7 +243,7 @@
     byId("compare-at").textContent = state.time.toFixed(2) + " s";
     const own = names();
     readout(own);
-    drawPath();
+    pointPaths();
     showFrames(own);
     if (!fromChart && state.plot) pointAt(state.plot);
     for (const bar of byId("compare-status").querySelectorAll(".bar")) bar.style.setProperty("--at", (100 * state.time) / (state.end || 1) + "%");
@@ -214,6 +261,8 @@
     state.end = Math.max(...state.runs.map((_, i) => series(i).t[series(i).frames - 1] || 0));
     byId("compare-time").max = state.end;
     byId("compare-time").step = Math.max(state.end / 1000, 0.01);
+    state.paths = comparedPaths();
+    showPaths();
     drawErrors(own);
     drawStatus(own);
     table("compare-metrics", metricRows(), own, "The runs have no metrics.");
@@ -244,11 +293,14 @@
     list.addEventListener("change", () => { if (list.value !== "") page.compareRuns([...state.runs, Number(list.value)]); list.value = ""; });
     byId("compare-clear").addEventListener("click", () => page.compareRuns([]));
     byId("compare-time").addEventListener("input", () => setTime(Number(byId("compare-time").value), false));
-    window.addEventListener("resize", () => { if (state.plot) state.plot.setSize({ width: byId("compare-error").clientWidth, height: 200 }); drawPath(); });
+    window.addEventListener("resize", () => { if (state.plot) state.plot.setSize({ width: byId("compare-error").clientWidth, height: 200 }); pointPaths(); });
+    byId("compare-view").addEventListener("change", (event) => chooseView(new Set(event.target.value === "3d" ? ["3d", "cameras", "loops", "landmarks", ...(state.runs.length === 1 ? ["error"] : [])] : [])));
+    byId("scene-options").addEventListener("change", ({ target }) => { if (target.checked) state.shows.add(target.value); else state.shows.delete(target.value); chooseView(state.shows); });
     page.onState(() => {
       const keys = (page.stateOf("compare") || "").split(".");
       const runs = keys.map((key) => page.index.runs.findIndex((run) => run.key === key)).filter((i) => i >= 0).slice(0, MAX_RUNS);
       const time = Number(page.stateOf("t")) || 0;
+      state.shows = new Set((page.stateOf("view") || "").split(" ").filter((name) => name));
       page.withRuns("compare", runs, () => { state.runs = runs; state.time = time; draw(); });
     });
   };

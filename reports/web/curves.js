@@ -19,7 +19,7 @@
     const lines = curves.names.map((name, i) => page.line(name, "c" + (i % page.LINE_COLORS), { points: { show: true, size: 6 }, spanGaps: true, dash: i < page.LINE_COLORS ? [] : [5, 4] }));
     const axes = page.axes(curves.unit);
     axes[0].label = curves.xLabel;
-    new uPlot({ width: figure.clientWidth || 900, height: 220, scales: { x: { time: false } }, axes, series: [{ label: curves.xLabel, value: page.number }, ...lines] },
+    page.plot({ width: figure.clientWidth || 900, height: 220, scales: { x: { time: false } }, axes, series: [{ label: curves.xLabel, value: page.number }, ...lines] },
       [curves.values, ...curves.data], figure);
   }
 

@@ -69,9 +69,9 @@
   function explainEmpty(own) {
     for (const row of own.rows) for (const cell of row.cells) {
       if (textOf(cell).trim() !== "-") continue;
-      const reason = keysOf(cell).length ? "n/a: the runs have no value of this metric" : "n/a: no run";
+      const reason = keysOf(cell).length ? "the runs have no value of this metric" : "no run", link = cell.querySelector("a");
       cell.title = cell.title || reason;
-      cell.querySelector("a") || cell.replaceChildren(page.element("abbr", { title: cell.title }, "n/a"));
+      if (link) link.title = cell.title; else cell.replaceChildren(page.missing(cell.title));
     }
   }
 

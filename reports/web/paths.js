@@ -8,12 +8,12 @@
   // Monotonic in brightness, so that it can be read without color.
   const RAMP = [[98, 66, 158], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
-  function rampColor(fraction) {
+  page.rampColor = function (fraction) {
     const place = Math.max(0, Math.min(1, fraction)) * (RAMP.length - 1);
     const low = Math.min(Math.floor(place), RAMP.length - 2);
     const mix = RAMP[low].map((value, i) => Math.round(value + (place - low) * (RAMP[low + 1][i] - value)));
     return "rgb(" + mix.join(",") + ")";
-  }
+  };
 
   function extent(lists) {
     let low = Infinity, high = -Infinity;
@@ -140,7 +140,7 @@
         if (xs[i] === null || xs[i - 1] === null) continue;
         const inside = series.t[i] >= span[0] && series.t[i] <= span[1];
         context.globalAlpha = inside ? 1 : 0.15;
-        context.strokeStyle = error && error[i] !== null ? rampColor(error[i] / largest) : page.color("accent");
+        context.strokeStyle = error && error[i] !== null ? page.rampColor(error[i] / largest) : page.color("accent");
         context.beginPath(); context.moveTo(shown.x(xs[i - 1]), shown.y(ys[i - 1])); context.lineTo(shown.x(xs[i]), shown.y(ys[i])); context.stroke();
       }
       context.globalAlpha = 1;
@@ -168,7 +168,7 @@
     }
 
     drawLegend(context, largest) {
-      for (let i = 0; i < 100; ++i) { context.fillStyle = rampColor(i / 99); context.fillRect(12 + i, 10, 1.5, 8); }
+      for (let i = 0; i < 100; ++i) { context.fillStyle = page.rampColor(i / 99); context.fillRect(12 + i, 10, 1.5, 8); }
       context.fillStyle = page.color("faint");
       context.fillText("error 0 to " + largest.toPrecision(3) + " m" + (this.truth ? "; grey: ground truth, red: tracking lost" : ""), 120, 18);
     }

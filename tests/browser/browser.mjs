@@ -3,7 +3,8 @@
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
 
-export const browser = await chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox"] });
+export const launch = (...flags) => chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox", ...flags] });
+export const browser = await launch();
 
 export async function test(name, action) {
   await action();
@@ -14,10 +15,11 @@ export const ready = (page) => page.waitForFunction(() => document.documentEleme
   .catch(() => assert.fail("not ready: " + page.problems.join("; ")));
 
 // Opens a file. Requests other than the file itself are recorded as problems unless `isAllowed` accepts them.
-export async function open(file, options = {}, isAllowed = () => false, hash = "") {
-  const page = await browser.newPage({ viewport: { width: 1300, height: 900 }, ...options });
+// options.browser: another one than `browser`. Chromium without a GPU warns of the speed of WebGL.
+export async function open(file, { browser: other = browser, ...options } = {}, isAllowed = () => false, hash = "") {
+  const page = await other.newPage({ viewport: { width: 1300, height: 900 }, ...options });
   page.problems = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.problems.push(message.text()); });
+  page.on("console", (message) => { if (["error", "warning"].includes(message.type()) && !/GPU stall due to ReadPixels/.test(message.text())) page.problems.push(message.text()); });
   page.on("pageerror", (error) => page.problems.push(error.message));
   page.on("dialog", (dialog) => { page.problems.push("dialog " + dialog.message()); dialog.dismiss(); });
   page.on("request", (request) => {

@@ -2,7 +2,7 @@
 // Tests of the report page. Run by pages.sh.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { browser, contrastSuffices, drawnCharts, keyboardSuffices, lightAndDarkDiffer, open, selection, test } from "./browser.mjs";
+import { browser, contrastSuffices, drawnCharts, keyboardSuffices, launch, lightAndDarkDiffer, open, selection, test } from "./browser.mjs";
 
 const { PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
 
@@ -83,19 +83,102 @@ await test("runs of a cell and others are compared: paths, errors, status, fault
   assert.match(await page.textContent("#compare-at"), /^[23]\.\d\d s$/);
 });
 
+await test("the reason of a missing value is shown to the keyboard, and ticks of small errors differ", async () => {
+  const missing = page.locator("#compare-metrics abbr").first();
+  assert.equal(await missing.textContent(), "n/a");
+  await missing.focus();
+  assert.match(await missing.evaluate((part) => getComputedStyle(part, "::after").content), /the run has no value of this metric/);
+  const ticks = await page.evaluate(() => window.stillpoint.axes("m")[1].values(null, [0, 0.0005, 0.001, 0.1 + 0.2]));
+  assert.deepEqual(ticks, ["0", "0.0005", "0.001", "0.3"]);
+});
+
+await test("the legend hides and shows a line by keyboard", async () => {
+  const entry = page.locator("#compare-error .u-series").nth(1), head = entry.locator("th");
+  const state = async () => [await head.getAttribute("aria-pressed"), await entry.evaluate((row) => row.classList.contains("u-off"))];
+  assert.deepEqual(await state(), ["true", false]);
+  await head.press("Enter");
+  assert.deepEqual(await state(), ["false", true]);
+  await head.press(" ");
+  assert.deepEqual(await state(), ["true", false]);
+  await head.click();
+  assert.deepEqual(await state(), ["false", true]);
+  await head.click();
+});
+
+// Colors of the 3-D view, which is drawn for that: WebGL does not keep what it has shown.
+const sceneColors = async (page) => new Map(await page.evaluate(() => {
+  window.stillpoint.redrawCompare();
+  const canvas = document.getElementById("compare-scene"), copy = document.createElement("canvas"), { width, height } = canvas;
+  Object.assign(copy, { width, height });
+  const context = copy.getContext("2d");
+  context.drawImage(canvas, 0, 0);
+  const counts = new Map();
+  for (const color of new Uint32Array(context.getImageData(0, 0, width, height).data.buffer)) counts.set(color, (counts.get(color) || 0) + 1);
+  return [...counts];
+}));
+const eyeOf = (page) => page.evaluate(() => window.stillpoint.stateOf("eye"));
+const sceneIsShown = (page) => page.waitForFunction(() => !document.getElementById("compare-scene").hidden);
+
+await test("paths are shown in 3-D with cameras and error colors, by keyboard and mouse", async () => {
+  assert.equal(await page.evaluate(() => typeof THREE), "undefined", "decoded before it is used");
+  await page.selectOption("#compare-view", "3d");
+  await sceneIsShown(page);
+  const withCameras = await sceneColors(page);
+  assert.ok(withCameras.size > 20, withCameras.size + " colors");
+  await page.getByLabel("cameras").uncheck();
+  const background = (counts) => Math.max(...counts.values());
+  const bare = await sceneColors(page);
+  assert.ok(background(bare) > background(withCameras), "fewer pixels are drawn without cameras");
+  await page.getByLabel("landmarks").uncheck();
+  assert.ok(background(await sceneColors(page)) > background(bare), "fewer pixels are drawn without landmarks");
+  await page.getByLabel("color by error").check();
+  const byError = await sceneColors(page), known = new Set(bare.keys());
+  assert.ok([...byError.keys()].filter((color) => !known.has(color)).length > 20, "colors of the error");
+  assert.match(await page.textContent("#path-caption"), /squares of [\d.]+ m; .*error 0 to [\d.]+ m/);
+  const frame = (await runs(page)).frame, eyes = [];
+  await page.locator("#compare-scene").focus();
+  for (const key of ["ArrowLeft", "Shift+ArrowUp", "+", "0"]) { await page.keyboard.press(key); eyes.push(await eyeOf(page)); }
+  assert.equal(new Set(eyes).size, 4);
+  assert.equal((await runs(page)).frame, frame, "the keys of the scene select no frame");
+  const canvas = page.locator("#compare-scene"), time = () => page.textContent("#compare-at");
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox(), middle = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(...middle);
+  await page.mouse.down();
+  await page.mouse.move(middle[0] + 60, middle[1] + 10, { steps: 3 });
+  await page.mouse.up();
+  assert.notEqual(await eyeOf(page), eyes[3], "turned by dragging");
+  const before = await time();
+  for (let part = 0.1; part < 1 && await time() === before; part += 0.02) await page.mouse.click(box.x + box.width * part, box.y + box.height / 2);
+  assert.notEqual(await time(), before, "a click on a path selects its time");
+});
+
+await test("without WebGL the top view is shown, and why", async () => {
+  const other = await launch("--disable-3d-apis");
+  const opened = await open(PAGE, { browser: other }, undefined, new URL(page.url()).hash);
+  await opened.waitForFunction(() => document.getElementById("scene-problem").textContent !== "");
+  assert.match(await opened.textContent("#scene-problem"), /no WebGL: the top view is shown/);
+  assert.equal(await opened.inputValue("#compare-view"), "plan");
+  assert.ok(await opened.locator("#compare-path").isVisible() && !await opened.locator("#compare-scene").isVisible());
+  assert.deepEqual(opened.problems, []);
+  await other.close();
+});
+
 await test("the address holds the state of the page", async () => {
   await page.click("#theme");
   await page.selectOption("#metric", "coverage");
   await page.evaluate(() => document.activeElement.blur());
   await page.keyboard.press("ArrowRight");
-  const state = (page) => page.evaluate(() => ({ ...document.getElementById("runs").dataset, compared: document.getElementById("compare").dataset.runs, time: document.getElementById("compare-at").textContent,
+  const state = (page) => page.evaluate(() => ({ view: document.getElementById("compare-view").value, shows: [...document.querySelectorAll("#scene-options :checked")].map((box) => box.value), ...document.getElementById("runs").dataset, compared: document.getElementById("compare").dataset.runs, time: document.getElementById("compare-at").textContent,
     theme: document.documentElement.dataset.theme, metric: document.getElementById("metric").value, sorted: document.querySelector("#table-coverage [aria-sort]:not([aria-sort=none])")?.textContent }));
   await selection(page, "runs");
   const before = await state(page);
   const other = await open(PAGE, { viewport: { width: 390, height: 844 } }, undefined, new URL(page.url()).hash);
   await selection(other, "runs");
+  await sceneIsShown(other);
   assert.deepEqual(await state(other), before);
-  assert.ok(before.theme && before.compared && before.frame && before.metric === "coverage");
+  assert.equal(await eyeOf(other), await eyeOf(page));
+  assert.ok(before.theme && before.compared && before.frame && before.metric === "coverage" && before.view === "3d" && await eyeOf(page));
   const wide = await other.evaluate(() => [document.documentElement.scrollWidth - innerWidth, ...[...document.querySelectorAll(".table")].filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.parentElement.textContent.slice(0, 60))]);
   assert.deepEqual(wide, [0], "wider than a phone");
   await other.close();

@@ -234,7 +234,8 @@ int show(const StoreArguments& arguments) {
 /// File name of an attachment; kinds without a specific name are written as text.
 std::string file_name(const std::string& kind) {
   if (kind == "trajectory") return "trajectory.tum";
-  if (kind == "timings" || kind == "frames" || kind == "counters") return kind + ".csv";
+  if (kind == "timings" || kind == "frames" || kind == "counters" || kind == "landmarks")
+    return kind + ".csv";
   if (kind == "claims") return "status.csv";
   if (kind == "stacks") return "stacks.folded";
   if (kind.starts_with(kImageKind)) return "image_" + kind.substr(kImageKind.size()) + ".jpg";

@@ -33,6 +33,7 @@ constexpr const char* kLabelsFile = "labels.csv";
 constexpr const char* kCostFile = "cost.svg";
 constexpr const char* kLoopCostFile = "loop_cost.svg";
 constexpr const char* kImagesFolder = "images";
+constexpr const char* kLandmarksFile = "landmarks.csv";
 
 std::string cost_svg(const OdometryRun& run) {
   return report::svg_text(report::cost_plot(report::cost_trend(report::frame_costs(run))));
@@ -102,6 +103,7 @@ void RunDumps::add(const FrameReport& report) {
   if (request_.labels) labels_.add(report);
   if (video_ && !attempt("--video", [&] { video_->add(report); })) video_.reset();
   if (worst_frames_ && !attempt("--images", [&] { worst_frames_->add(report); })) worst_frames_.reset();
+  if (request_.images > 0) landmarks_.add(report);
   if (recording_ && !attempt("--mcap", [&] { recording_->add(report); })) recording_.reset();
   if (map_ && !attempt("--map-cloud", [&] { add_to_map(report); })) map_.reset();
 }
@@ -113,6 +115,8 @@ std::vector<std::string> RunDumps::finish(const OdometryRun* run) {
   if (map_) attempt("--map-cloud", [&] { write_cloud(request_.map_cloud, map_->cloud()); });
   if (request_.labels)
     attempt("--dump labels", [&] { write_files(request_.folder, {{kLabelsFile, labels_.text()}}); });
+  if (request_.images > 0)
+    attempt("--images", [&] { write_files(request_.folder, {{kLandmarksFile, landmarks_.text()}}); });
   if (request_.cost && run != nullptr)
     attempt("--dump cost", [&] { write_files(request_.folder, {{kCostFile, cost_svg(*run)}}); });
   if (request_.cost && loops != nullptr)

@@ -14,6 +14,7 @@
 #include "datasets/mapping/voxel_map.h"
 #include "datasets/sensor_stream.h"
 #include "reports/frames/annotated_frames.h"
+#include "reports/frames/landmark_samples.h"
 #include "reports/frames/run_recording.h"
 
 namespace stillpoint::bench {
@@ -34,11 +35,11 @@ class LabelDump {
 
 /// The requested outputs.
 struct DumpRequest {
-  std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, loop_cost.svg, images/
+  std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, loop_cost.svg, landmarks.csv, images/
   bool labels = false;
   bool cost = false;
   std::filesystem::path video;      ///< folder; empty = none
-  std::size_t images = 0;           ///< number of annotated images of the worst frames
+  std::size_t images = 0;           ///< number of annotated images of the worst frames; with landmarks.csv
   std::filesystem::path mcap;       ///< recording for viewers; empty = none
   bool mcap_images = false;         ///< the recording contains color and depth images
   std::filesystem::path map_cloud;  ///< point cloud of static surfaces; empty = none
@@ -81,6 +82,7 @@ class RunDumps {
   LabelDump labels_;
   std::optional<report::RunVideo> video_;
   std::optional<report::WorstFrames> worst_frames_;
+  report::LandmarkSamples landmarks_;
   std::optional<report::RunRecording> recording_;
   std::optional<datasets::VoxelMap> map_;
   std::optional<Timestamp> map_t_;  ///< of the last frame in the map

@@ -94,7 +94,7 @@
       },
     };
     const commits = page.index.commits.map((_, i) => i);
-    const plot = new uPlot(options, [commits, ...lines.map((line) => page.valuesOf(page.index.series[line.index]))], figure);
+    const plot = page.plot(options, [commits, ...lines.map((line) => page.valuesOf(page.index.series[line.index]))], figure);
     // A click without dragging opens the commit; a drag zooms.
     let down = 0;
     plot.over.addEventListener("mousedown", (event) => { down = event.clientX; });
