@@ -3,20 +3,22 @@
 # Plants private vocabulary and expects scripts/language.sh to report it, and correct English to pass.
 source "$(dirname "${BASH_SOURCE[0]}")/repo_checks.sh"
 
-# refused TEXT...: a line of a source file
+# refused TEXT...: each is a line of one source file, and each must be reported
 refused() {
+  local output line=0
+  empty_tree
+  put core/imu/a.h "$(printf '%s\n' "$@")"
+  output="$("$root/scripts/language.sh" "$scratch" 2>&1)" && fail "no text is refused"
   for text in "$@"; do
-    empty_tree
-    put core/imu/a.h "$text"
-    expect_fault language.sh "core/imu/a.h:1:" "\"$text\""
+    line=$((line + 1))
+    [[ $'\n'"$output" == *$'\n'"core/imu/a.h:$line:"* ]] || fail "\"$text\" is not seen"
   done
 }
+# accepted TEXT...: lines of one source file, none of which is reported
 accepted() {
-  for text in "$@"; do
-    empty_tree
-    put core/imu/a.h "$text"
-    expect_clean language.sh "\"$text\""
-  done
+  empty_tree
+  put core/imu/a.h "$(printf '%s\n' "$@")"
+  expect_clean language.sh "correct English"
 }
 refused '/// One picture of the camera.' 'int picture_count;' 'struct PictureOnWay;' 'struct PointSighting {};' 'Verdict verdict;' \
   'void judge(int);' 'std::string recipe;' 'BoardModel board;' 'Journal journal_;' '// another driver holds the run' \
