@@ -49,7 +49,8 @@ namespace {
 Names names_of(const StoredRun& run) {
   Names names;
   for (const Metric& metric : run.metrics) {
-    if (must_exist(metric.name) && std::isfinite(metric.value)) names.insert("metric " + metric.name);
+    if (must_exist(metric.name) && std::isfinite(metric.value) && !is_impossible(metric))
+      names.insert("metric " + metric.name);
   }
   for (const ModuleCost& cost : run.costs) {
     if (std::isfinite(cost.mean_ms)) names.insert("module " + cost.module);

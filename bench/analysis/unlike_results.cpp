@@ -117,6 +117,13 @@ class UnlikeList {
 
 void add_unlike_metrics(UnlikeList& list, const RunPair& pair) {
   const std::string subject = subject_label(pair.base->identity);
+  const Metric* base_frames = find_stored(*pair.base, metric_id::kFrames);
+  const Metric* head_frames = find_stored(*pair.head, metric_id::kFrames);
+  // Errors over a part of the data are other errors. In real time, dropped frames are a result.
+  if (base_frames != nullptr && head_frames != nullptr && base_frames->value != head_frames->value &&
+      pair.base->identity.mode != "realtime")
+    list.add({"number of processed frames", subject, fmt::format("{}", base_frames->value),
+              fmt::format("{}", head_frames->value)});
   for (const Metric& base : pair.base->metrics) {
     const Metric* head = find_stored(*pair.head, base.name);
     if (head == nullptr || same_measure(pair, base.name).first != nullptr) continue;
@@ -167,6 +174,7 @@ bool is_interleaved(const std::vector<RunPair>& pairs) {
 std::optional<eval::Pair> comparable_values(const RunPair& pair, std::string_view metric) {
   const auto [base, head] = same_measure(pair, metric);
   if (base == nullptr || !std::isfinite(base->value) || !std::isfinite(head->value)) return std::nullopt;
+  if (is_impossible(*base) || is_impossible(*head)) return std::nullopt;
   return eval::Pair{base->value, head->value};
 }
 

@@ -50,6 +50,10 @@ const MetricDescriptor* gated_metric(std::string_view id) {
   return metric != nullptr && metric->gate ? metric : nullptr;
 }
 
+bool is_impossible(const Metric& metric) {
+  return metric.value < 0.0 && gated_metric(without_protocol(metric.name)) != nullptr;
+}
+
 std::string_view without_protocol(std::string_view name) {
   return name.substr(name.rfind('/') + 1);  // npos + 1 = 0
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -36,13 +37,19 @@ std::vector<std::string> faults_of(Statement check, const std::string& what) {
   return faults;
 }
 
-/// One text per metric without a finite value; 9e999 is the infinity of SQL.
-std::vector<std::string> infinite_metrics(const Database& database) {
+/// One text per metric with an infinite or impossible value; 9e999 is the infinity of SQL.
+std::vector<std::string> faulty_metrics(const Database& database) {
   std::vector<std::string> faults;
   Statement rows = database.prepare(
-      "SELECT run.key, name FROM metric JOIN run ON run.id = metric.run WHERE abs(value) = 9e999");
-  while (rows.step())
-    faults.push_back("run " + rows.text(0) + ": metric \"" + rows.text(1) + "\" is infinite");
+      "SELECT run.key, name, value FROM metric JOIN run ON run.id = metric.run "
+      "WHERE value < 0 OR value = 9e999");
+  while (rows.step()) {
+    const Metric metric{.name = rows.text(1), .value = rows.real(2)};
+    const bool is_infinite = std::isinf(metric.value);
+    if (!is_infinite && !is_impossible(metric)) continue;
+    faults.push_back(fmt::format("run {}: metric \"{}\" is {}", rows.text(0), metric.name,
+                                 is_infinite ? "infinite" : "negative"));
+  }
   return faults;
 }
 
@@ -97,7 +104,7 @@ std::vector<std::string> verify_store(const fs::path& file) {
   add([&] {
     return faults_of(database.prepare("PRAGMA foreign_key_check"), "row with a missing reference");
   });
-  add([&] { return infinite_metrics(database); });
+  add([&] { return faulty_metrics(database); });
   add([&] { return damaged_files(database, BlobFiles(files_folder(file) / "blobs")); });
   return faults;
 }

@@ -3,10 +3,13 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/model/json_problem.h"
+#include "bench/model/metrics.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
 #include "bench/store/store_writer.h"
@@ -134,6 +137,17 @@ RunOutcome outcome_of_json(const Json& json) {
   return outcome;
 }
 
+/// @throws InputError if a metric is impossible: a negative error would count as an improvement
+RunOutcome checked_outcome(const Json& run, const std::string& place) {
+  RunOutcome outcome = outcome_of_json(run);
+  for (const Metric& metric : outcome.metrics) {
+    if (is_impossible(metric))
+      throw InputError(place, fmt::format("run {}: metric {} is {:g}; it cannot be negative",
+                                          run.at("key").get<std::string>(), metric.name, metric.value));
+  }
+  return outcome;
+}
+
 /// Parses an exported text and calls `read` with it. @throws InputError for every fault of the text
 template <class Read>
 auto read_export(const std::string& text, const std::string& place, const Read& read) {
@@ -171,10 +185,13 @@ std::string export_store(const fs::path& file, ExportExtent extent) {
 
 MergeReport import_store(const std::string& text, const std::string& place, const fs::path& into) {
   return read_export(text, place, [&](const Json& json) {
+    std::vector<std::pair<RunIdentity, RunOutcome>> runs;  // all are read before one is written
+    for (const Json& run : json.at("runs"))
+      runs.emplace_back(identity_of(run.at("identity")), checked_outcome(run, place));
     StoreWriter writer(into);
     MergeReport report;
-    for (const Json& run : json.at("runs")) {
-      const bool is_added = add_run(writer, identity_of(run.at("identity")), outcome_of_json(run));
+    for (const auto& [identity, outcome] : runs) {
+      const bool is_added = add_run(writer, identity, outcome);
       ++(is_added ? report.added : report.present);
     }
     for (const Json& plan : json.at("plans")) {
@@ -192,10 +209,10 @@ MergeReport import_store(const std::string& text, const std::string& place, cons
 }
 
 std::vector<StoredRun> exported_runs(const std::string& text, const std::string& place) {
-  return read_export(text, place, [](const Json& json) {
+  return read_export(text, place, [&](const Json& json) {
     std::vector<StoredRun> runs;
     for (const Json& run : json.at("runs")) {
-      const RunOutcome outcome = outcome_of_json(run);
+      const RunOutcome outcome = checked_outcome(run, place);
       runs.push_back({.key = run.at("key"),
                       .identity = identity_of(run.at("identity")),
                       .outcome = outcome.outcome,

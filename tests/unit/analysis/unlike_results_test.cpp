@@ -69,6 +69,23 @@ TEST(UnlikeResults, AModuleThatIsTimedPerFrameIsNotComparedWithOnePerCall) {
   expect_unlike(sides, "unit of module window_solve");
 }
 
+TEST(UnlikeResults, APartOfTheFramesIsNotComparedWithAll) {
+  UnlikeSides sides;
+  for (StoredRun& run : sides.base) run.metrics.push_back({"frames", "", "", 600.0});
+  for (StoredRun& run : sides.head) run.metrics.push_back({"frames", "", "", 300.0});
+  expect_unlike(sides, "number of processed frames");
+  for (std::vector<StoredRun>* side : {&sides.base, &sides.head}) {
+    for (StoredRun& run : *side) run.identity.mode = "realtime";  // a slower program drops frames
+  }
+  EXPECT_TRUE(sides.compared().unlike.empty());
+}
+
+TEST(UnlikeResults, ANegativeErrorIsNoImprovement) {
+  UnlikeSides sides;
+  for (StoredRun& run : sides.head) run.metrics.front() = {"ate_rmse_m", "", "m", -0.02};
+  EXPECT_EQ(sides.compared().result(), ChangeClass::kMissing);
+}
+
 TEST(UnlikeResults, OtherDataUnderOneNameIsNotCompared) {
   UnlikeSides sides;
   for (StoredRun& run : sides.head) run.identity.sequence_id = "20 s";
