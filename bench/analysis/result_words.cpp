@@ -38,7 +38,8 @@ constexpr ResultWord kWords[] = {
      "on one sequence, which are pooled instead"},
     {kCompare, "changed, reported only", "as before; the estimate exceeds margin and floor"},
     {kCompare, "not compared: unlike",
-     "other data of one name, kind, mode, cores, seeds, protocol, unit, machine, or order of measurement"},
+     "other data of one name, number of frames, kind, mode, cores, seeds, protocol, unit, machine, or order "
+     "of measurement"},
     {kHistory, "open", "a level shift for the worse that lasts up to the newest commit, or a missing result"},
     {kHistory, "accepted", "open, and covered by `store accept`"},
     {kHistory, "resolved", "a level shift for the worse; the newest level is as good as the one before it"},

@@ -307,6 +307,41 @@ std::optional<ConventionFinding> swapped_arguments(const Trajectory& gt, const T
           rate_hz(gt), rate_hz(est))};
 }
 
+/// The ground-truth pose at a time, or the closest one before or after it.
+const Pose& pose_near(const Trajectory& gt, Timestamp t) {
+  const auto found =
+      std::ranges::lower_bound(gt.poses, t.ns, {}, [](const StampedPose& p) { return p.t.ns; });
+  return (found == gt.poses.end() ? gt.poses.back() : *found).T_w_f;
+}
+
+std::optional<ConventionFinding> repeated_poses(const Trajectory& gt, const Trajectory& est) {
+  constexpr double kMinDuration = 1.0;  // [s]; a pose that is repeated for less may be that of a slow system
+  constexpr double kMinMotion = 0.1;    // [m] of the ground truth meanwhile
+  const auto is_equal = [](const Pose& a, const Pose& b) {
+    return a.p == b.p && a.q.coeffs() == b.q.coeffs();
+  };
+  double repeated_s = 0.0;
+  double longest_s = 0.0;
+  std::size_t longest = 0;  // its first pose
+  for (std::size_t first = 0, last = 0; first < est.poses.size(); first = ++last) {
+    const StampedPose& pose = est.poses[first];
+    while (last + 1 < est.poses.size() && is_equal(est.poses[last + 1].T_w_f, pose.T_w_f)) ++last;
+    const double duration_s = seconds_between(pose.t, est.poses[last].t);
+    if (duration_s < kMinDuration) continue;
+    if ((pose_near(gt, est.poses[last].t).p - pose_near(gt, pose.t).p).norm() < kMinMotion) continue;
+    repeated_s += duration_s;
+    if (duration_s > longest_s) longest = first;
+    longest_s = std::max(longest_s, duration_s);
+  }
+  if (repeated_s == 0.0) return std::nullopt;
+  return ConventionFinding{
+      Convention::kRepeatedPoses,
+      format_message(
+          "the estimate repeats its last pose for %.1f of %.1f s while the body moves (longest for %.1f s, "
+          "%.1f s after its start): a system that is lost should give no pose; coverage and CR count these",
+          repeated_s, span_s(est), longest_s, seconds_between(est.poses.front().t, est.poses[longest].t))};
+}
+
 }  // namespace
 
 std::optional<ConventionFinding> find_wrong_scale(const Trajectory& gt, const Trajectory& whole) {
@@ -347,6 +382,7 @@ std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, 
     if (findings.empty()) add(body_frame(gt, est));
   }
   add(swapped_arguments(gt, whole));
+  add(repeated_poses(gt, whole));
   return findings;
 }
 

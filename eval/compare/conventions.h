@@ -40,6 +40,7 @@ enum class Convention {
   kInvertedPoses,     ///< T_f_w instead of T_w_f, or only its rotation
   kBodyFrame,         ///< poses of another body frame
   kSwappedArguments,  ///< the ground truth looks like an estimate and vice versa
+  kRepeatedPoses,     ///< the last pose again and again while the body moves
 };
 
 struct ConventionFinding {

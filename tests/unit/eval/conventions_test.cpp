@@ -206,5 +206,26 @@ TEST(TimeOffset, IsNotDeterminedByMotionThatDoesNotTellIt) {
   EXPECT_NE(find_time_offset(circle, circle)->undetermined, "");
 }
 
+TEST(Conventions, DetectAPoseThatIsRepeatedWhileTheBodyMoves) {
+  Trajectory est = kEst;
+  for (std::size_t i = 200; i < 290; ++i) est.poses[i].T_w_f = est.poses[199].T_w_f;
+  EXPECT_EQ(violations(kGt, est), std::vector{Convention::kRepeatedPoses});
+  const std::string message = find_convention_violations(kGt, est).front().message;
+  EXPECT_NE(message.find("for 3.0 of 19.3 s"), std::string::npos) << message;
+  EXPECT_NE(message.find("6.6 s after its start"), std::string::npos) << message;
+}
+
+TEST(Conventions, AcceptEqualPosesOfABodyThatRests) {
+  Trajectory gt = kGt;
+  Trajectory est = kEst;
+  for (StampedPose& pose : gt.poses) {
+    if (pose.t.ns > gt.poses[900].t.ns) pose.T_w_f = gt.poses[900].T_w_f;
+  }
+  for (StampedPose& pose : est.poses) {
+    if (pose.t.ns > gt.poses[900].t.ns) pose.T_w_f = gt.poses[900].T_w_f;
+  }
+  EXPECT_TRUE(violations(gt, est).empty());
+}
+
 }  // namespace
 }  // namespace stillpoint::eval
