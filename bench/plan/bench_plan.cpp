@@ -219,6 +219,14 @@ void require_systems(const BenchPlan& plan) {
       plan.max_frames > 0 ||
       std::ranges::any_of(plan.faults, [](const std::string& fault) { return fault != kNoFault; });
   for (const ExternalSystem& system : systems) {
+    const bool is_paced = std::ranges::any_of(
+        system.command, [](const std::string& word) { return word.find("{speed}") != std::string::npos; });
+    if (plan.mode == "realtime" && !is_paced)
+      throw InputError(
+          place_of(plan, "mode"),
+          "system \"" + system.name +
+              "\" does not read its input at the rate of the sensors; its command needs {speed}, "
+              "e.g. of `stillpoint data play {sequence} --speed {speed}`");
     if (is_changed && system.layout == ExportLayout::kAsIs)
       throw InputError(place_of(plan, plan.max_frames > 0 ? "max_frames" : "faults"),
                        "system \"" + system.name +

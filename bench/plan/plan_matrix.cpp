@@ -156,7 +156,7 @@ class PlanExpander {
     identity.variant = system.variant;
     identity.build = system.version;
     identity.config_hash = system.hash;
-    identity.mode = "external";
+    identity.mode = matrix_.plan.mode == "realtime" ? "external, realtime" : "external";
     // The recorded files cannot begin later.
     const bool is_later = system.layout != ExportLayout::kAsIs;
     matrix_.runs.push_back({.sequence = matrix_.sequences.size() - 1,

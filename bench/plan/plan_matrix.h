@@ -29,6 +29,11 @@ struct PlannedRun {
   std::string commit_time;        ///< UTC, of a program that was built from a commit; empty = unknown
 };
 
+/// Whether a run is one of another program. Its mode is "external", or "external, realtime".
+[[nodiscard]] inline bool is_external(const RunIdentity& identity) {
+  return identity.mode.starts_with("external");
+}
+
 struct PlanMatrix {
   BenchPlan plan;
   std::vector<PlanSequence> sequences;

@@ -84,6 +84,7 @@ Placeholders placeholders_of(const ExternalSystem& system, const RunRequest& req
   values["out"] = fs::absolute(request.work).string();
   values["seed"] = std::to_string(request.identity.seed);
   values["repetition"] = std::to_string(request.identity.repetition);
+  values["speed"] = request.identity.mode.ends_with("realtime") ? "1" : "0";
   if (!system.calibration_template.empty())
     values["calibration"] = (fs::absolute(request.work) / system.calibration_file).string();
   for (const auto& [name, value] : system.param) values[std::string(kParamPrefix) + name] = value;
@@ -124,6 +125,42 @@ std::vector<std::string> environment_of(const ExternalSystem& system, const Plac
     if (!is_replaced) environment.emplace_back(inherited);
   }
   return environment;
+}
+
+/// Lets the process start the program in a container.
+/// @param values of the placeholders
+/// @throws InputError if a folder cannot be mounted
+ProcessSpec in_container(const ExternalSystem& system, const RunRequest& request, const Placeholders& values,
+                         ProcessSpec spec) {
+  const bool is_apptainer = system.runner == ContainerRunner::kApptainer;
+  std::vector<std::string> words = {is_apptainer ? "exec" : "run"};
+  if (is_apptainer) words.insert(words.end(), {"--containall", "--net"});
+  words.insert(words.end(),
+               {"--network=none", (is_apptainer ? "--pwd=" : "--workdir=") + spec.folder.string()});
+  for (const char* const name : {"sequence", "here", "out"}) {
+    const std::string& path = values.at(name);
+    if (path.find(':') != std::string::npos)
+      throw InputError(path, "contains a colon, which separates the parts of a mount; use another folder");
+    words.push_back(fmt::format("--{}={}:{}{}", is_apptainer ? "bind" : "volume", path, path,
+                                std::string_view(name) == "out" ? "" : ":ro"));
+  }
+  for (const std::string& variable : system.environment)
+    words.push_back("--env=" + expanded(variable, values, system.path));
+  if (!is_apptainer) words.emplace_back("--rm");
+  if (!is_apptainer && request.memory_limit_mb > 0)
+    words.push_back(fmt::format("--memory={}m", request.memory_limit_mb));
+  // Killing the runner does not end its container.
+  if (system.runner == ContainerRunner::kPodman && request.time_limit_s > 0.0)
+    words.push_back(fmt::format("--timeout={:.0f}", std::ceil(request.time_limit_s)));
+  words.insert(words.end(), system.runner_options.begin(), system.runner_options.end());
+  words.insert(words.end(), {system.image, spec.program.string()});
+  words.insert(words.end(), spec.arguments.begin(), spec.arguments.end());
+  for (const auto& [runner, name] : enum_names(system.runner)) {
+    if (runner == system.runner) spec.program = name;
+  }
+  spec.arguments = std::move(words);
+  spec.folder = request.work;
+  return spec;
 }
 
 /// The document itself, or its member "timings" as in a result.json.
@@ -224,7 +261,7 @@ ProcessSpec ExternalRun::command(const RunRequest& request) const {
   spec.folder = fs::path(system_.folder) / expanded(system_.working_folder, values, system_.path);
   spec.environment = environment_of(system_, values);
   spec.output_in_messages = true;
-  return spec;
+  return is_contained() ? in_container(system_, request, values, std::move(spec)) : spec;
 }
 
 namespace {
@@ -273,7 +310,11 @@ RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
 std::string ExternalRun::manifest(const RunRequest& request) const {
   Json json;
   json["schema"] = 1;
-  json["system"] = {{"name", system_.name}, {"version", system_.version}, {"command", system_.command}};
+  json["system"] = {{"name", system_.name},
+                    {"version", system_.version},
+                    {"command", system_.command},
+                    {"folder", system_.folder},
+                    {"description", system_.text}};
   // What the history of the system uses as its commit; the gate stores other builds.
   json["build"] = {{"git_commit", system_.version}};
   if (!request.commit_time.empty()) json["build"]["git_time"] = request.commit_time;

@@ -46,7 +46,9 @@ class ExternalRun : public SlamSystem {
   /// are cached.
   [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;
 
-  /// Version, command, sequence and machine.
+  [[nodiscard]] bool is_contained() const override { return system_.runner != ContainerRunner::kNone; }
+
+  /// Version, description, sequence and machine.
   [[nodiscard]] std::string manifest(const RunRequest& request) const override;
 
   /// Evaluates the trajectory written by the system.

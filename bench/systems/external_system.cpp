@@ -51,7 +51,7 @@ std::string text_of(const Setting& setting) {
 /// Values for the check of placeholders.
 Placeholders placeholder_names(const ExternalSystem& system) {
   Placeholders names;
-  for (const char* name : {"sequence", "out", "here", "bin", "seed", "repetition"}) names[name] = "";
+  for (const char* name : {"sequence", "out", "here", "bin", "seed", "repetition", "speed"}) names[name] = "";
   if (!system.calibration_template.empty()) names["calibration"] = "";
   if (!system.source.binary.empty()) names["source"] = names["binary"] = "";
   for (const auto& [name, value] : system.param) names[std::string(kParamPrefix) + name] = value;
@@ -79,6 +79,14 @@ void require_environment(const Setting& setting, const ExternalSystem& system) {
     throw InputError(setting.file, setting.line,
                      "\"environment\" contains \"" + variable + "\"; write \"NAME=value\"");
   }
+}
+
+void require_image(const ExternalSystem& system) {
+  if ((system.runner == ContainerRunner::kNone) == system.image.empty()) return;
+  throw InputError(system.path, system.image.empty()
+                                    ? "has a runner and no image; add image = \"NAME\" of the container"
+                                    : "has an image and no runner; add runner = \"podman\", \"docker\" or "
+                                      "\"apptainer\"");
 }
 
 void require_source(const SystemSource& source, const Setting& setting) {
@@ -225,7 +233,9 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
                            " does not exist; write the calibration "
                            "file of the system there, with placeholders such as {fx}");
   }
+  system.text = text;
   system.path = path;
+  require_image(system);
   system.variant = system.name;
   apply_sets(system, set_settings, sets);
   system.folder = fs::absolute(path).parent_path().string();
@@ -278,6 +288,11 @@ trajectory = "trajectory.tum"
 # inverse = false
 # scale = "metric"                # "unknown": a monocular system; its scale is fitted to the ground truth
 # timings = ""                    # JSON in {{out}}: milliseconds per module, see bench/README.md
+
+# The program is in a container: "podman", "docker" or "apptainer"; {{sequence}} and {{here}} are read-only in it
+# runner = "podman"
+# image = "localhost/my_slam:1"
+# runner_options = []
 
 # For `stillpoint history`, `bisect` and `compare FILE@COMMIT`: the repository of the program, the command that
 # builds a commit in its work tree, and the result, which is {{binary}} in the command; {{source}} is the work tree
@@ -359,7 +374,10 @@ std::string find_program(const ExternalSystem& system) {
     std::error_code ignored;
     return fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
   };
-  const std::string program = program_of(system, with_folders(system, system.command.front()));
+  std::string program = program_of(system, with_folders(system, system.command.front()));
+  for (const auto& [runner, name] : enum_names(system.runner)) {
+    if (runner == system.runner && runner != ContainerRunner::kNone) program = name;
+  }
   if (program.find('/') != std::string::npos) return is_executable(program) ? program : "";
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);

@@ -54,6 +54,15 @@ constexpr auto enum_names(PositionScale) {
       {{PositionScale::kMetric, "metric"}, {PositionScale::kUnknown, "unknown"}}};
 }
 
+/// Program that starts a container.
+enum class ContainerRunner { kNone, kPodman, kDocker, kApptainer };
+constexpr auto enum_names(ContainerRunner) {
+  return EnumNames<ContainerRunner, 4>{{{ContainerRunner::kNone, "none"},
+                                        {ContainerRunner::kPodman, "podman"},
+                                        {ContainerRunner::kDocker, "docker"},
+                                        {ContainerRunner::kApptainer, "apptainer"}}};
+}
+
 /// Where the program of a system is built from: the table [source] of a description.
 struct SystemSource {
   std::string git = ".";           ///< folder of a repository, relative to {here}
@@ -79,6 +88,7 @@ void visit_fields(Visitor&& field, Config& config) {
 ///   {source}       with [source]: the work tree of the commit that is measured, else the repository itself
 ///   {binary}       with [source]: the built program in {source}
 ///   {seed}, {repetition}  of the run
+///   {speed}        of the playback: 1 in plans with mode = "realtime", else 0, as fast as possible
 ///   {param.NAME}   value of NAME in the table [param], of a parameter set, or of the sweep
 ///
 /// and in the template also those of `calibration_placeholders`.
@@ -97,10 +107,16 @@ struct ExternalSystem {
   bool inverse = false;  ///< the poses are T_c_w or T_b_w
   PositionScale scale = PositionScale::kMetric;
   std::string timings;  ///< in {out}: JSON with modules and threads as "timings" in result.json; may be empty
-  SystemSource source;  ///< the table [source]
+  /// The program is executed in a container without network, in which {sequence} and {here} are read-only and
+  /// {out} is writable, at the same paths.
+  ContainerRunner runner = ContainerRunner::kNone;
+  std::string image;                         ///< of the container, e.g. "localhost/my_slam:1"
+  std::vector<std::string> runner_options;   ///< further options of the runner, before the image
+  SystemSource source;                       ///< the table [source]
   std::map<std::string, std::string> param;  ///< the table [param]: values of {param.NAME}
   std::string variant;  ///< name, and "+SET" for each parameter set that was applied: that of its runs
   // Set by load_external_system.
+  std::string text;           ///< of the description
   std::string path;           ///< of the file, as shown in messages
   std::string folder;         ///< {here}
   std::string source_folder;  ///< {source}; empty without [source]
@@ -125,6 +141,9 @@ void visit_fields(Visitor&& field, Config& config) {
   field("inverse", config.inverse);
   field("scale", config.scale);
   field("timings", config.timings);
+  field("runner", config.runner);
+  field("image", config.image);
+  field("runner_options", config.runner_options);
   field("source", config.source);
 }
 

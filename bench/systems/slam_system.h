@@ -27,6 +27,8 @@ struct RunRequest {
   std::filesystem::path work;      ///< exclusive output folder of the run
   int images = 0;                  ///< number of annotated images of its worst frames
   bool frame_cache = true;         ///< this odometry uses the frame cache
+  double time_limit_s = 0.0;       ///< of a container; 0 = none
+  int memory_limit_mb = 0;         ///< same
 };
 
 /// Starts a system and reads its results.
@@ -39,6 +41,9 @@ class SlamSystem {
 
   /// What is known of a run without its result, as JSON: the manifest of a run that does not write one.
   [[nodiscard]] virtual std::string manifest(const RunRequest& request) const = 0;
+
+  /// Whether the program runs in a container, whose processor time and memory are not those of the process.
+  [[nodiscard]] virtual bool is_contained() const { return false; }
 
   /// Result of a run after its process exited or was killed by a signal. The caller adds the process costs
   /// and checks the resource limits.

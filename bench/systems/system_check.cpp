@@ -540,7 +540,9 @@ SystemCheck check_system(const ExternalSystem& system, const CheckOptions& optio
             ""};
   }
   fs::create_directories(options.folder);
-  const RunRequest request = smoke_run(system, options.folder / "out");
+  RunRequest request = smoke_run(system, options.folder / "out");
+  request.time_limit_s = options.time_limit_s;
+  request.memory_limit_mb = options.memory_limit_mb;
   Trial trial;
   const std::string finding = process_finding(system, request, options, trial);
   if (!finding.empty()) return {one_line(finding), ""};

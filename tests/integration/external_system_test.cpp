@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include "bench/store/store.h"
 #include "tests/support/program.h"
@@ -199,6 +200,90 @@ TEST(ExternalSystem, ParameterSetsAreAnAblation) {
   EXPECT_NE(ablation.out.find("+200.0 %"), std::string::npos) << ablation.out;  // 0.03 / 0.01 - 1
   const std::string page = (folder.path() / "page").string();
   EXPECT_EQ(run_here(folder, {"report", store_of(folder), "--out", page}).exit_code, 0);
+}
+
+/// A system without motion that reads the rows of `data play`.
+void write_reader(const TemporaryFolder& folder) {
+  folder.write("reader.awk", "$1 == \"rgb\" { print $2, 0, 0, 0, 0, 0, 0, 1 > OUT \"/trajectory.tum\" }\n");
+  folder.write(
+      "reader.toml",
+      "name = \"reader\"\ncommand = [\"sh\", \"-c\", \"{bin}/stillpoint data play {sequence} --speed {speed} "
+      "| awk -v OUT={out} -f {here}/reader.awk\"]\n");
+}
+
+TEST(ExternalSystem, IsPlayedAtTheRateOfTheSensors) {
+  const TemporaryFolder folder;
+  write_reader(folder);
+  const ProgramResult result = bench_system(folder, "reader.toml", "mode = \"realtime\"\nmax_frames = 46\n");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const bench::StoredRun run = run_of(folder);
+  EXPECT_EQ(run.identity.mode, "external, realtime");
+  EXPECT_EQ(*bench::metric_value(run, "coverage"), 1.0);
+  EXPECT_GE(*bench::metric_value(run, "process_wall_s"), 1.5);  // 45 intervals at 30 Hz
+  write_replay(folder, "replay", "0.01");
+  const ProgramResult refused = bench_system(folder, "replay.toml", "mode = \"realtime\"\n");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("needs {speed}"), std::string::npos) << refused.err;
+}
+
+TEST(ExternalSystem, AStoredRunIsRepeatedWithItsDescription) {
+  const TemporaryFolder folder;
+  write_replay(folder, "replay", "0.01");
+  EXPECT_EQ(bench_system(folder, "replay.toml").exit_code, 0);
+  const std::vector<std::string> command = {"reproduce", run_of(folder).key,
+                                            "--store",   store_of(folder),
+                                            "--out",     (folder.path() / "again").string()};
+  write_replay(folder, "replay", "0.02");  // the description of the run is the stored one
+  const ProgramResult result = run_here(folder, command);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("equal trajectories; ATE 0.007"), std::string::npos) << result.out;
+  fs::remove_all(folder.path() / "cache");
+  EXPECT_EQ(run_here(folder, {"reproduce", "0123456789", "--store", store_of(folder)}).exit_code, 2);
+}
+
+TEST(ExternalSystem, ARunIsProfiled) {
+  const TemporaryFolder folder;
+  write_replay(folder, "replay", "0.01", "timings = \"result.json\"\n");
+  const std::string out = (folder.path() / "run").string();
+  const ProgramResult result =
+      run_here(folder, {"systems", "run", (folder.path() / "replay.toml").string(), "office", "--out", out});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const char* part : {"feature_tracking", "state_optimization", "p95"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
+  std::ifstream file(fs::path(out) / "result.json");
+  const std::string json{std::istreambuf_iterator<char>(file), {}};
+  for (const char* metric : {"process_cpu_s", "process_wall_s", "peak_memory_mb"})
+    EXPECT_NE(json.find(metric), std::string::npos) << json;
+}
+
+// Each verb of the program is in the table, and none of its cells is empty or says only that it does not
+// work.
+TEST(ExternalSystem, TheTableOfTheManualHasAllVerbs) {
+  std::ifstream file(STILLPOINT_SOURCE_DIR "/bench/README.md");
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("| verb |") || (!rows.empty() && line.starts_with("|"))) rows.push_back(line);
+    if (!rows.empty() && line.empty()) break;
+  }
+  ASSERT_GT(rows.size(), 10u);
+  for (const std::string& row : rows) {
+    const std::string last = row.substr(row.rfind("| ", row.size() - 2) + 2);
+    EXPECT_GT(last.size(), 4u) << row;
+    EXPECT_FALSE(last.starts_with("no")) << row;
+  }
+  const std::string help = run_program({"--help"}).out;
+  std::istringstream lines(help.substr(help.find("Subcommands:")));
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string verb;
+    if (!(words >> verb)) continue;
+    const bool is_listed = std::ranges::any_of(rows, [&](const std::string& row) {
+      return row.find("`" + verb + "`") < row.find(" | ") || row.find("`" + verb + " ") < row.find(" | ");
+    });
+    EXPECT_TRUE(is_listed) << verb;
+  }
 }
 
 /// Compares two descriptions in two pairs.

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <poll.h>
+
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -19,6 +27,7 @@
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
+#include "eval/io/text_reader.h"
 #include "reports/tables/data_table.h"
 
 namespace stillpoint::bench {
@@ -269,6 +278,63 @@ Command list_command() {
           .action = [json] { return *json ? print_registry() : list(); }};
 }
 
+/// A row of a list of images or of inertial samples.
+struct PlayedRow {
+  Timestamp t;
+  std::string text;  ///< its kind, and the row
+};
+
+/// Appends the rows of a file, if it exists.
+void add_rows(std::vector<PlayedRow>& rows, const fs::path& folder, const std::string& kind) {
+  const fs::path file = folder / (kind + ".txt");
+  if (!fs::exists(file)) return;
+  const std::string text = eval::read_text_file(file);
+  eval::LineReader lines(text);
+  while (const std::optional<std::string_view> line = lines.next()) {
+    if (line->empty() || line->front() == '#') continue;
+    const std::optional<Timestamp> t = eval::parse_stamp(line->substr(0, line->find_first_of(" \t,")));
+    if (!t) throw InputError(file.string(), lines.line_number(), "does not begin with a time stamp [s]");
+    rows.push_back({*t, kind + " " + std::string(*line)});
+  }
+}
+
+/// Prints the rows of a folder in the layout "tum" in temporal order, each at its time.
+/// @param speed 0: at once
+int play(const std::string& folder, double speed) {
+  std::vector<PlayedRow> rows;
+  for (const char* const kind : {"imu", "depth", "rgb"}) add_rows(rows, folder, kind);
+  if (rows.empty())
+    throw InputError(folder, "has no rgb.txt, depth.txt or imu.txt; write it by `stillpoint data export`");
+  std::ranges::stable_sort(rows, {}, &PlayedRow::t);
+  install_interrupt_handlers();
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const auto elapsed_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  constexpr double kLongestWait_s = 0.1;  // an interruption ends it
+  for (const PlayedRow& row : rows) {
+    const double due_s = speed > 0.0 ? seconds_between(rows.front().t, row.t) / speed : 0.0;
+    for (double rest_s = due_s - elapsed_s(); rest_s > 0.0 && !interrupt_requested();
+         rest_s = due_s - elapsed_s())
+      poll(nullptr, 0, static_cast<int>(std::ceil(1e3 * std::min(rest_s, kLongestWait_s))));
+    if (interrupt_requested()) return kExitInterrupted;
+    std::cout << row.text << '\n';
+    if (speed > 0.0) std::cout.flush();
+    if (!std::cout) return kExitFindings;  // its reader ended
+  }
+  return kExitOk;
+}
+
+Command play_command() {
+  const auto folder = std::make_shared<std::string>();
+  const auto speed = std::make_shared<double>(1.0);
+  return {.name = "play",
+          .summary = "Print the rows of an exported sequence at the rate of its sensors, for other programs",
+          .example = "data play build/walking_xyz --speed 1 | ./my_slam",
+          .options = {{"DIR", "Folder with rgb.txt, depth.txt and imu.txt, as of data export", folder.get()},
+                      {"--speed", "1: as recorded; 0: at once [1]", speed.get(), {0, 1e3}}},
+          .action = [folder, speed] { return play(*folder, *speed); }};
+}
+
 }  // namespace
 
 Command data_command() {
@@ -277,7 +343,7 @@ Command data_command() {
           .example = "data synth walking_xyz --out build/walking_xyz",
           .subcommands = {catalogue_command(), get_command(), verify_command(), list_command(), add_command(),
                           check_command(), synth_command(), export_command(), cache_command(),
-                          cloud_command(), faults_command()}};
+                          cloud_command(), faults_command(), play_command()}};
 }
 
 }  // namespace stillpoint::bench

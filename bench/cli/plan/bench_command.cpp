@@ -171,7 +171,7 @@ int incomplete_code(const PlanMatrix& matrix, const PlanReport& report) {
 /// Empty, or ", from frame 3 on": how the seeds of a recording differ.
 std::string later_text(const PlannedRun& run) {
   if (run.later_frames == 0) return "";
-  const char* noise = run.identity.mode == "external" ? "" : ", with noise";
+  const char* noise = is_external(run.identity) ? "" : ", with noise";
   return fmt::format(", from frame {} on{}", run.later_frames, noise);
 }
 

@@ -10,12 +10,16 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
+#include "bench/analysis/run_groups.h"
+#include "bench/analysis/run_statistics.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "bench/cli/data/fetch_progress.h"
@@ -24,6 +28,7 @@
 #include "bench/plan/plan_matrix.h"
 #include "bench/plan/sequence_registry.h"
 #include "bench/record/output_folder.h"
+#include "bench/store/find_run.h"
 #include "bench/store/store.h"
 #include "bench/systems/published_table.h"
 #include "bench/systems/slam_system.h"
@@ -136,6 +141,88 @@ struct ReproduceArguments {
   std::string mirror;
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
+
+/// Whether a target is the key of a stored run, or its beginning.
+bool is_run_key(const std::string& target) {
+  constexpr std::size_t kShortest = 6;
+  return target.size() >= kShortest && target.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// The description with which a run was executed. Its program and its other files must be as they were then.
+ExternalSystem stored_system(const Store& store, const StoredRun& run) {
+  const auto manifest = nlohmann::json::parse(store.manifest(run));
+  const auto& system = manifest.at("system");
+  if (!system.contains("description"))
+    throw InputError("run " + run.key, "has no description; it was executed by an older version");
+  const std::vector<std::string> sets = parse_system_name(run.identity.variant).sets;
+  const fs::path file = fs::path(system.at("folder").get<std::string>()) / "stored.toml";
+  ExternalSystem stored = parse_external_system(system.at("description").get<std::string>(), file, sets);
+  if (stored.hash != run.identity.config_hash)
+    throw InputError("run " + run.key, "cannot be repeated: its program, template or scripts below " +
+                                           stored.folder + " changed since");
+  return stored;
+}
+
+/// The stored run as a plan of one run.
+/// @param folder receives the text of its plan
+PlanMatrix matrix_of_run(const Store& store, const StoredRun& run, const fs::path& folder) {
+  const bool is_own = run.identity.system == kOwnSystem;
+  for (const StoredPlan& plan : store.plans()) {
+    if (std::ranges::find(plan.run_keys, run.key) == plan.run_keys.end()) continue;
+    write_files(folder, {{plan.name + ".toml", plan.text}});
+    PlanMatrix matrix = expand_plan(load_plan((folder / (plan.name + ".toml")).string()), build_name(), {});
+    std::erase_if(matrix.runs, [&](PlannedRun& planned) {
+      if (!is_own && planned.identity.variant == run.identity.variant) {
+        planned.identity.build = run.identity.build;
+        planned.identity.config_hash = run.identity.config_hash;
+      }
+      return run_key(planned.identity) != run.key;
+    });
+    if (matrix.runs.empty())
+      throw InputError("run " + run.key, "cannot be repeated: it was executed by build " +
+                                             run.identity.build +
+                                             ", or with other data or another config than today's");
+    if (!is_own) matrix.systems.at(matrix.runs.front().system) = stored_system(store, run);
+    return matrix;
+  }
+  throw InputError("run " + run.key, "belongs to no plan of the store");
+}
+
+/// Prints how a run differs from its repetition. @return findings if it does
+int print_difference(const ExecutionDifference& row) {
+  const auto ate = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.6f} m", *value) : std::string("n/a");
+  };
+  std::string text = "equal trajectories";
+  if (!row.failure.empty()) text = row.failure;
+  if (row.failure.empty() && !row.equal_trajectories)
+    text = fmt::format("trajectories differ by at most {:.2g} m", row.largest_m);
+  std::cout << fmt::format("{}: {}; ATE {}, repeated {}\n", row.label, text, ate(row.ate_m),
+                           ate(row.other_ate_m));
+  return row.failure.empty() && row.equal_trajectories ? kExitOk : kExitFindings;
+}
+
+/// Executes a stored run again, and compares the trajectories.
+int reproduce_run(const ReproduceArguments& arguments) {
+  const Store store(arguments.store);
+  const StoredRun run = find_run(store, arguments.target);
+  const fs::path folder = fs::path(arguments.out) / run.key;
+  const fs::path file = folder / "run.sqlite";
+  require_safe_folder(folder, {.names = {"run.sqlite", "run.sqlite.files"}, .marks = {{"run.sqlite"}}},
+                      {arguments.store});
+  require_writable(folder);
+  fs::remove_all(files_folder(file));
+  for (const char* const suffix : {"-wal", "-shm", ""}) fs::remove(file.string() + suffix);
+  install_interrupt_handlers();
+  const PlanMatrix matrix = matrix_of_run(store, run, folder);
+  {
+    StoreWriter writer(file);
+    if (run_plan(matrix, writer, {}, plan_progress()).interrupted) return kExitInterrupted;
+  }
+  const std::vector<ExecutionDifference> rows = execution_differences(store, std::span(&run, 1), Store(file));
+  if (rows.empty()) throw InputError("run " + run.key, "was not executed: its sequence is not available");
+  return print_difference(rows.front());
+}
 
 /// A table or figure, and the plans that reproduce it.
 struct Target {
@@ -268,6 +355,7 @@ TargetResult reproduce_target(const Target& target, const ReproduceArguments& ar
 }
 
 int reproduce(const ReproduceArguments& arguments) {
+  if (is_run_key(arguments.target)) return reproduce_run(arguments);
   if (arguments.real && arguments.synthetic)
     throw InputError("--real", "cannot be combined with --synthetic");
   if (arguments.get && !arguments.real) throw InputError("--get", "requires --real");
@@ -300,9 +388,11 @@ Command reproduce_command() {
   const auto arguments = std::make_shared<ReproduceArguments>();
   return {
       .name = "reproduce",
-      .summary = "Reproduce a table of the paper; can be resumed after an interruption",
+      .summary = "Reproduce a table of the paper, or repeat a stored run of any system",
       .example = "reproduce table2 --synthetic --jobs 2",
-      .options = {{"TARGET", "table1, table2, table3, openloris, bonn, vcu_rvi or all", &arguments->target},
+      .options = {{"TARGET",
+                   "table1, table2, table3, openloris, bonn, vcu_rvi or all; or the key of a run in --store",
+                   &arguments->target},
                   {"--synthetic", "Use rendered sequences [default]", &arguments->synthetic},
                   {"--real", "Use recorded sequences; missing ones are named and remain empty rows",
                    &arguments->real},

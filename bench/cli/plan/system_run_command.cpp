@@ -16,9 +16,11 @@
 #include "bench/plan/execution/outcome_scorer.h"
 #include "bench/plan/plan_matrix.h"
 #include "bench/process/child_process.h"
+#include "bench/profile/meters/run_monitor.h"
 #include "bench/record/output_folder.h"
 #include "bench/systems/external_run.h"
 #include "core/base/error.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -86,12 +88,41 @@ ExternalSystem with_parameters(ExternalSystem system, const std::vector<std::str
   return system;
 }
 
-ProcessResult execute_limited(ProcessSpec spec, const BenchPlan& plan) {
+/// A process, and the energy of the machine while it ran.
+struct MeasuredProcess {
+  ProcessResult process;
+  std::optional<DeviceScore> device;
+};
+
+/// @param frames of the sequence, for the energy per frame
+MeasuredProcess execute_limited(ProcessSpec spec, const BenchPlan& plan, std::size_t frames) {
   spec.time_limit_s = plan.time_limit_s;
   if (plan.memory_limit_mb > 0) spec.memory_limit_bytes = std::int64_t{plan.memory_limit_mb} << 20;
+  RunMonitor monitor("/");
   ProcessPool pool(interrupt_requested);
   pool.start(0, spec);
-  return pool.wait_next()->second;
+  MeasuredProcess measured{.process = pool.wait_next()->second, .device = {}};
+  for (std::size_t i = 0; i < frames; ++i) monitor.frame_done();
+  measured.device = monitor.finish();
+  // The times of its frames are not known.
+  if (measured.device) measured.device->joules_per_frame_sd.reset();
+  return measured;
+}
+
+/// Times of modules and threads, as far as the system states them.
+std::string times_text(const std::vector<ModuleCost>& costs) {
+  if (costs.empty()) return "";
+  report::TableRows table = {{"ms", "per", "mean", "median", "p95", "max", "calls"}};
+  const auto ms = [](double value) { return fmt::format("{:.3f}", value); };
+  for (const ModuleCost& cost : costs)
+    table.push_back({cost.module, cost.per, ms(cost.mean_ms), ms(cost.median_ms), ms(cost.p95_ms),
+                     ms(cost.max_ms), fmt::format("{}", cost.calls)});
+  return report::format_table(table, report::TableStyle::kText);
+}
+
+std::size_t frames_of(const RunRequest& request) {
+  const std::size_t all = played_sequence(request)->info().frame_times.size();
+  return request.max_frames > 0 ? std::min(all, static_cast<std::size_t>(request.max_frames)) : all;
 }
 
 std::string result_text(const RunIdentity& identity, const RunOutcome& outcome) {
@@ -145,11 +176,15 @@ int run_system(const SystemRunArguments& arguments) {
                            .max_frames = planned.max_frames,
                            .fault = planned.fault,
                            .sequence = sequence,
-                           .work = folder / "out"};
+                           .work = folder / "out",
+                           .time_limit_s = plan.time_limit_s,
+                           .memory_limit_mb = plan.memory_limit_mb};
   fs::remove_all(request.work);
-  const ProcessResult process = execute_limited(external.command(request), plan);
+  const MeasuredProcess measured = execute_limited(external.command(request), plan, frames_of(request));
   if (interrupt_requested()) return kExitInterrupted;
-  RunOutcome outcome = outcome_of_run(external, request, process, plan);
+  RunOutcome outcome = outcome_of_run(external, request, measured.process, plan);
+  for (Metric& metric : measured_metrics({.device = measured.device}))
+    outcome.metrics.push_back(std::move(metric));
   std::vector<OutputFile> files = {{"result.json", result_text(planned.identity, outcome)},
                                    {"manifest.json", outcome.manifest},
                                    {"program.log", outcome.attachments["log"]}};
@@ -160,6 +195,7 @@ int run_system(const SystemRunArguments& arguments) {
       "{} {}: {}{}{}\n  {}\n", planned.identity.sequence, planned.identity.variant,
       status_name(outcome.outcome), outcome.detail.empty() ? "" : ", ", outcome.detail,
       outcome.outcome == Outcome::kOk ? metrics_line(outcome) : (folder / "program.log").string());
+  std::cout << times_text(outcome.costs);
   if (outcome.outcome == Outcome::kOk) std::cout << "  " << (folder / "result.json").string() << '\n';
   return outcome.outcome == Outcome::kOk ? kExitOk : kExitFindings;
 }

@@ -54,10 +54,14 @@ RunOutcome reported_outcome(const SlamSystem& system, const RunRequest& request,
   }
 }
 
-std::vector<Metric> process_metrics(const ProcessResult& end) {
-  return measured_metrics({.process = ProcessCost{.wall_s = end.wall_s,
-                                                  .cpu_s = end.user_s + end.system_s,
-                                                  .peak_memory_bytes = end.peak_memory_bytes}});
+/// @param contained only the wall time is that of the system
+std::vector<Metric> process_metrics(const ProcessResult& end, bool contained) {
+  std::vector<Metric> metrics =
+      measured_metrics({.process = ProcessCost{.wall_s = end.wall_s,
+                                               .cpu_s = end.user_s + end.system_s,
+                                               .peak_memory_bytes = end.peak_memory_bytes}});
+  if (contained) std::erase_if(metrics, [](const Metric& metric) { return metric.name != "process_wall_s"; });
+  return metrics;
 }
 
 std::vector<Metric> protocol_metrics(const eval::Evaluation& evaluation) {
@@ -117,7 +121,7 @@ RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request, c
   outcome = with_ground_truth(std::move(outcome), request, plan);
   // Under valgrind, time and memory of the process are not those of the odometry.
   if (plan.kind == RunKind::kInstructions) return outcome;
-  const std::vector<Metric> costs = process_metrics(end);
+  const std::vector<Metric> costs = process_metrics(end, system.is_contained());
   outcome.metrics.insert(outcome.metrics.end(), costs.begin(), costs.end());
   return outcome;
 }

@@ -142,7 +142,7 @@ std::string profile_json(const HarnessProfile& profile) {
 void require_recorded_boxes(const PlanMatrix& matrix) {
   for (const PlannedRun& run : matrix.runs) {
     const PlanSequence& sequence = matrix.sequences[run.sequence];
-    const bool is_own = run.identity.mode != "external" && run.program.empty();
+    const bool is_own = !is_external(run.identity) && run.program.empty();
     if (!is_own || sequence.rendering || !sequence.unavailable_reason.empty()) continue;
     try {
       require_recorded_boxes(load_config(run.config), sequence.folder);
@@ -209,7 +209,7 @@ class PlanRunner {
     return matrix_.sequences[matrix_.runs[run].sequence];
   }
   [[nodiscard]] const SlamSystem& system_of(std::size_t run) const {
-    if (identity_of(run).mode == "external") return external_[matrix_.runs[run].system];
+    if (is_external(identity_of(run))) return external_[matrix_.runs[run].system];
     return own_;
   }
 
@@ -243,7 +243,7 @@ class PlanRunner {
 
   /// Whether its time is measured, so that nothing else may disturb it.
   [[nodiscard]] bool is_timed(std::size_t run) const {
-    return matrix_.plan.kind == RunKind::kTiming || identity_of(run).mode == "realtime";
+    return matrix_.plan.kind == RunKind::kTiming || identity_of(run).mode.ends_with("realtime");
   }
 
   /// Moves the next run that can be started to the front of the queue; without one and without running
@@ -313,7 +313,9 @@ class PlanRunner {
             .work = writer_.work_folder(identity_of(run)),
             // Drawing the annotated images would distort the measured times.
             .images = is_timed(run) ? 0 : matrix_.plan.images,
-            .frame_cache = matrix_.plan.frame_cache};
+            .frame_cache = matrix_.plan.frame_cache,
+            .time_limit_s = matrix_.plan.time_limit_s,
+            .memory_limit_mb = matrix_.plan.memory_limit_mb};
   }
 
   [[nodiscard]] ProcessSpec spec_of(std::size_t run, const fs::path& folder) const {
@@ -330,7 +332,7 @@ class PlanRunner {
   void prepare(std::size_t run, const fs::path& folder) {
     if (!is_timed(run) || !prepared_.insert(matrix_.runs[run].sequence).second) return;
     const Stopwatch time;
-    if (matrix_.plan.frame_cache && identity_of(run).mode != "external") {
+    if (matrix_.plan.frame_cache && !is_external(identity_of(run))) {
       if (hooks_.on_step) hooks_.on_step("read images of " + sequence_of(run).name);
       fill_frame_cache(folder, matrix_.runs[run].max_frames, hooks_.stop_requested);
     }

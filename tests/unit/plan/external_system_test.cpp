@@ -154,6 +154,32 @@ TEST(ExternalOutput, IsReadAsPosesOfTheCamera) {
   EXPECT_NE(output.text.find("-1.000000000 0.500000000"), std::string::npos) << output.text;
 }
 
+TEST(ExternalRun, StartsItsProgramInAContainer) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "name = \"s\"\nlayout = \"as_is\"\nrunner = \"podman\"\nimage = \"s:1\"\nrunner_options = "
+      "[\"--pids-limit=9\"]\n"
+      "environment = [\"A=1\"]\ncommand = [\"/slam\", \"{sequence}\"]\n";
+  const ExternalRun run(parse_external_system(text, (folder.path() / "s.toml").string()));
+  EXPECT_TRUE(run.is_contained());
+  RunRequest request;
+  request.sequence = folder.path() / "office";
+  request.work = folder.path() / "out";
+  request.time_limit_s = 9.5;
+  request.memory_limit_mb = 300;
+  const ProcessSpec spec = run.command(request);
+  const std::string here = folder.path().string();
+  EXPECT_EQ(spec.program, "podman");
+  EXPECT_EQ(spec.arguments, (std::vector<std::string>{"run", "--network=none", "--workdir=" + here + "/out",
+                                                      "--volume=" + here + "/office:" + here + "/office:ro",
+                                                      "--volume=" + here + ":" + here + ":ro",
+                                                      "--volume=" + here + "/out:" + here + "/out",
+                                                      "--env=A=1", "--rm", "--memory=300m", "--timeout=10",
+                                                      "--pids-limit=9", "s:1", "/slam", here + "/office"}));
+  expect_bad_description("name = \"s\"\ncommand = [\"s\"]\nrunner = \"docker\"", {"s.toml: ", "no image"});
+  expect_bad_description("name = \"s\"\ncommand = [\"s\"]\nimage = \"a\"", {"s.toml: ", "no runner"});
+}
+
 TEST(ExternalOutput, MatricesHaveTheStampsOfTheFrames) {
   const TemporaryFolder folder;
   folder.write("poses.txt", "1 0 0 7 0 1 0 0 0 0 1 0\n1 0 0 8 0 1 0 0 0 0 1 0\n");
