@@ -74,6 +74,7 @@ struct SweepAxis {
 };
 
 /// Name of an undisturbed run in `BenchPlan::faults`.
+inline constexpr std::string_view kFaultSeparator = " + ";  ///< of sequence and fault in names of runs
 inline constexpr std::string_view kNoFault = "none";
 
 /// Values of `BenchPlan::expected`.

@@ -124,7 +124,7 @@ class PlanExpander {
   static std::string inject(RunIdentity& identity, const std::string& fault) {
     if (fault == kNoFault) return "";
     std::string injected = fault_text(datasets::parse_fault(fault));
-    identity.sequence += " + " + fault;
+    identity.sequence += std::string(kFaultSeparator) + fault;
     identity.sequence_id += "-" + injected;
     return injected;
   }

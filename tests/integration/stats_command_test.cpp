@@ -175,6 +175,32 @@ TEST_F(StatsCommand, FindsTheRunsOfAFaultPlanFileByItsName) {
   EXPECT_TRUE(row.at("time_to_detect_s").is_null());
 }
 
+TEST_F(StatsCommand, FaultsOfRecordedSequencesHaveRows) {
+  const std::string text =
+      "variants = [\"vo\"]\nfaults = [\"none\", \"blank:start=1,duration=1\"]\nexpected = [\"survive\", "
+      "\"survive\"]\n[recorded]\nsequences = [\"*\"]\n";
+  const std::string plan = (folder_.path() / "recordings.toml").string();
+  std::ofstream(plan) << text;
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan stored{.name = "recordings", .title = "", .text = text, .run_keys = {}};
+  const auto add = [&](const std::string& sequence) {
+    const bench::RunIdentity identity{.variant = "vo", .sequence = sequence};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = {{"false_confidence", "", "", 0.3}}});
+    stored.run_keys.push_back(bench::run_key(identity));
+  };
+  add("desk");
+  writer.record_plan(stored);
+  expect_rejected(stats({"faults", "--plan", plan}), {"store.sqlite", "no run with a fault", "bench"});
+  add("desk + blank:start=1,duration=1");
+  writer.record_plan(stored);
+  const ProgramResult result = stats({"faults", "--plan", plan});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_NE(result.out.find("| desk     | blank:start=1,duration=1 | survive  | wrong, -, 30.0 % (!) |"),
+            std::string::npos)
+      << result.out;
+}
+
 TEST_F(StatsCommand, ImperfectionsAreGeometricMeansOverSequences) {
   bench::StoreWriter writer(file_);
   bench::StoredPlan plan{.name = "rigs", .title = "", .text = "variants = [\"vo\"]\n", .run_keys = {}};

@@ -2,6 +2,8 @@
 // `stillpoint stats faults`.
 #include <algorithm>
 #include <iostream>
+#include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -9,6 +11,7 @@
 #include "bench/cli/stats/stats_actions.h"
 #include "bench/model/metrics.h"
 #include "bench/plan/bench_plan.h"
+#include "bench/plan/plan_sequences.h"
 #include "bench/systems/external_system.h"
 #include "core/base/error.h"
 #include "eval/metrics/statistics.h"
@@ -76,7 +79,7 @@ MatrixRun matrix_run(const RunGroup& group, const RunIdentity& identity, const s
   const StoredRun* run = find_run(group, identity.variant, identity.sequence);
   if (run == nullptr) return {};
   const StoredRun* undisturbed =
-      find_run(group, identity.variant, identity.sequence.substr(0, identity.sequence.find(" + ")));
+      find_run(group, identity.variant, identity.sequence.substr(0, identity.sequence.find(kFaultSeparator)));
   const double ate = undisturbed == nullptr ? 0.0 : metric_value(*undisturbed, metric_id::kAte).value_or(0.0);
   return {run, outcome_of(*run, std::max(kMinError_m, kMaxErrorRatio * ate), expected)};
 }
@@ -119,10 +122,24 @@ report::DataRow score_values(const MatrixRun& one, bool is_disturbed) {
   return values;
 }
 
-/// Median over the undisturbed sequences of the plan.
-std::string claim_text(const RunGroup& group, const std::string& variant, const BenchPlan& plan) {
+/// The rendered sequences of the plan, executed or not, and the recorded ones that have runs, by name.
+std::vector<std::string> sequences_of(const BenchPlan& plan, const RunGroup& group) {
+  std::vector<std::string> names = matching_presets(plan.rendered.sequences);
+  std::set<std::string> recorded;
+  for (const StoredRun& run : group.runs) {
+    const std::string& name = run.identity.sequence;
+    recorded.insert(name.substr(0, name.find(kFaultSeparator)));
+  }
+  for (const std::string& name : names) recorded.erase(name);
+  names.insert(names.end(), recorded.begin(), recorded.end());
+  return names;
+}
+
+/// Median over the undisturbed sequences.
+std::string claim_text(const RunGroup& group, const std::string& variant,
+                       std::span<const std::string> sequences) {
   std::vector<double> claims;
-  for (const std::string& sequence : plan.rendered.sequences) {
+  for (const std::string& sequence : sequences) {
     const StoredRun* run = find_run(group, variant, sequence);
     const auto claim = run == nullptr ? std::nullopt : metric_value(*run, metric_id::kClaimedThreeSigma);
     if (claim) claims.push_back(*claim);
@@ -135,8 +152,11 @@ std::string claim_text(const RunGroup& group, const std::string& variant, const 
 class FaultMatrix {
  public:
   FaultMatrix(const BenchPlan& plan, const RunGroup& group)
-      : plan_(plan), group_(group), variants_(compared_names(plan)), tallies_(variants_.size()) {
-    for (const std::string& sequence : plan.rendered.sequences) {
+      : group_(group),
+        sequences_(sequences_of(plan, group)),
+        variants_(compared_names(plan)),
+        tallies_(variants_.size()) {
+    for (const std::string& sequence : sequences_) {
       for (std::size_t i = 0; i < plan.faults.size(); ++i) {
         if (plan.faults[i] == kNoFault) {
           add_undisturbed(sequence);
@@ -161,9 +181,14 @@ class FaultMatrix {
                       fmt::format("{} ({:.0f} %)", tally.as_expected, 100.0 * tally.as_expected / runs),
                       fmt::format("{:.2f} %", 100.0 * tally.false_confidence / runs),
                       fmt::format("{:.2f} %", 100.0 * tally.missed_availability / runs),
-                      fmt::format("{}", tally.late), claim_text(group_, variants_[v], plan_)});
+                      fmt::format("{}", tally.late), claim_text(group_, variants_[v], sequences_)});
     }
     return rows;
+  }
+
+  /// Whether a run has a fault of the plan.
+  [[nodiscard]] bool has_runs() const {
+    return std::ranges::any_of(tallies_, [](const FaultTally& tally) { return tally.runs > 0; });
   }
 
   /// Whether all runs of the first variant did as expected.
@@ -174,7 +199,9 @@ class FaultMatrix {
     rows_.push_back({sequence, fault, expected});
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       const MatrixRun one = matrix_run(
-          group_, {.variant = variants_[v], .sequence = fmt::format("{} + {}", sequence, fault)}, expected);
+          group_,
+          {.variant = variants_[v], .sequence = fmt::format("{}{}{}", sequence, kFaultSeparator, fault)},
+          expected);
       if (one.run != nullptr) count(one, tallies_[v]);
       rows_.back().push_back(cell_of(one));
       add_data({sequence, fault, expected, variants_[v]}, score_values(one, true));
@@ -194,8 +221,8 @@ class FaultMatrix {
     data_.push_back(std::move(names));
   }
 
-  const BenchPlan& plan_;
   const RunGroup& group_;
+  std::vector<std::string> sequences_;
   std::vector<std::string> variants_;
   std::vector<FaultTally> tallies_;  ///< per variant
   report::TableRows rows_;
@@ -222,13 +249,18 @@ int stats_faults(const StatsArguments& arguments) {
   output.header.insert(output.header.end(), variants.begin(), variants.end());
   report::TableRows totals;
   bool all_expected = true;
+  bool has_runs = false;
   for (const RunGroup& group : selection.groups) {
     const FaultMatrix matrix(plan, group);
     output.groups.push_back(matrix.rows());
     const report::TableRows rows = matrix.totals();
     totals.insert(totals.end(), rows.begin() + (totals.empty() ? 0 : 1), rows.end());
     all_expected = all_expected && matrix.is_as_expected();
+    has_runs = has_runs || matrix.has_runs();
   }
+  if (!has_runs)
+    throw InputError(chosen.store, "contains no run with a fault of " + plan.path +
+                                       "; execute them with `stillpoint bench`");
   if (chosen.format != StatsFormat::kTable)
     output.notes = {"The expectation is that of the first variant; runs without a fault have none."};
   print_stats(output, chosen);

@@ -15,8 +15,7 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr double kMinCoverage = 0.5;                 // the ATE of fewer frames is not comparable
-constexpr std::string_view kFaultSeparator = " + ";  // between sequence and fault in the name of a run
+constexpr double kMinCoverage = 0.5;  // the ATE of fewer frames is not comparable
 
 std::string fault_of(const StoredRun& run) {
   const std::size_t end = run.identity.sequence.find(kFaultSeparator);
