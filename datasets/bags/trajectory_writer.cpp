@@ -19,16 +19,17 @@ std::array<double, 36> pose_covariance(const eval::StampedCovariance& covariance
 }  // namespace
 
 void write_bag_trajectory(const BagTopic& target, const Trajectory& trajectory,
-                          std::span<const eval::StampedCovariance> covariances) {
-  const char* const type =
-      covariances.empty() ? "geometry_msgs/PoseStamped" : "geometry_msgs/PoseWithCovarianceStamped";
+                          std::span<const eval::StampedCovariance> covariances, TrajectoryMessage message) {
+  const char* const type = message == TrajectoryMessage::kOdometry ? "nav_msgs/Odometry"
+                           : covariances.empty()                   ? "geometry_msgs/PoseStamped"
+                                                 : "geometry_msgs/PoseWithCovarianceStamped";
   BagWriter writer(target.bag, ChunkCompression::kNone);
   const std::uint32_t connection = writer.add_connection(target.topic, type);
   for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
     const StampedPose& pose = trajectory.poses[i];
-    PoseMessage message{.header = {.stamp = pose.t, .frame = "world"}, .child = {}, .pose = pose.T_w_f};
-    if (!covariances.empty()) message.covariance = pose_covariance(covariances[i]);
-    writer.write(connection, pose.t, serialize_pose(message, type, writer.format()));
+    PoseMessage content{.header = {.stamp = pose.t, .frame = "world"}, .child = "body", .pose = pose.T_w_f};
+    if (!covariances.empty()) content.covariance = pose_covariance(covariances[i]);
+    writer.write(connection, pose.t, serialize_pose(content, type, writer.format()));
   }
   writer.finish();
 }

@@ -47,7 +47,9 @@ TEST(TrajectoryCommand, ConvertsToEveryFormatAndBack) {
                                     {"e.csv", "euroc", {}},
                                     {"k.txt", "kitti", {"--times", files.at("k_times.txt")}},
                                     {"b.bag:/odom", "bag", {}},
-                                    {"m.mcap:/odom", "bag", {}}};
+                                    {"m.mcap:/odom", "bag", {}},
+                                    {"o.bag:/odom", "odometry", {}},
+                                    {"o.mcap:/odom", "odometry", {}}};
   for (const auto& [out, to, reading] : conversions) {
     const ProgramResult there =
         TrajectoryFiles::run({"convert", files.file, "--out", files.at(out), "--to", to});
@@ -69,8 +71,13 @@ TEST(TrajectoryCommand, KeepsCovariancesInTheFormatsThatHaveThem) {
   static_cast<void>(poses.next());  // the header
   while (const auto line = poses.next()) rows.append(*line).append(" 0.01 0.02 0.03 0.001 0.002 0.003\n");
   const std::string with = files.folder.write("with.tum", rows).string();
-  for (const char* const out : {"c.csv", "c.mcap:/odom"}) {
-    ASSERT_EQ(TrajectoryFiles::run({"convert", with, "--out", files.at(out)}).exit_code, 0);
+  const std::pair<const char*, const char*> outputs[] = {
+      {"c.csv", "csv"}, {"c.mcap:/odom", "bag"}, {"o.mcap:/odom", "odometry"}, {"o.bag:/odom", "odometry"}};
+  for (const auto& [out, to] : outputs) {
+    ASSERT_EQ(TrajectoryFiles::run({"convert", with, "--out", files.at(out), "--to", to}).exit_code, 0);
+    const std::string file = files.at(out);
+    const std::string content = eval::read_text_file(file.substr(0, file.find(":/")));
+    EXPECT_EQ(content.find("Odometry") != std::string::npos, std::string(to) == "odometry") << out;
     const std::string back = files.at("back.tum");
     const ProgramResult result = TrajectoryFiles::run({"convert", files.at(out), "--out", back, "--force"});
     EXPECT_NE(result.out.find("with covariances"), std::string::npos) << out << result.out << result.err;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint trajectory`: converts, cuts, joins, moves and resamples trajectory files. Covariances are
-// written in the columns behind the pose (TUM, CSV), or as PoseWithCovarianceStamped (bags).
+// written in the columns behind the pose (TUM, CSV), or as PoseWithCovarianceStamped or Odometry (bags).
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -30,13 +30,14 @@
 namespace stillpoint::bench {
 namespace {
 
-enum class PoseFileFormat { kTum, kCsv, kEuroc, kKitti, kBag };
+enum class PoseFileFormat { kTum, kCsv, kEuroc, kKitti, kBag, kOdometry };
 constexpr auto enum_names(PoseFileFormat) {
-  return EnumNames<PoseFileFormat, 5>{{{PoseFileFormat::kTum, "tum"},
+  return EnumNames<PoseFileFormat, 6>{{{PoseFileFormat::kTum, "tum"},
                                        {PoseFileFormat::kCsv, "csv"},
                                        {PoseFileFormat::kEuroc, "euroc"},
                                        {PoseFileFormat::kKitti, "kitti"},
-                                       {PoseFileFormat::kBag, "bag"}}};
+                                       {PoseFileFormat::kBag, "bag"},
+                                       {PoseFileFormat::kOdometry, "odometry"}}};
 }
 
 struct PoseOutput {
@@ -83,6 +84,7 @@ std::string beginning_of(PoseFileFormat format, const fs::path& file) {
     case PoseFileFormat::kKitti:
       return "";
     case PoseFileFormat::kBag:
+    case PoseFileFormat::kOdometry:
       break;
   }
   return file.extension() == ".bag" ? "#ROSBAG V2.0" : "\x89MCAP0";
@@ -149,8 +151,8 @@ void require_pose_output(const PoseOutput& output, const std::vector<std::string
   const PoseFileFormat format = format_of(output);
   const OutputRules rules = rules_of(output, inputs);
   const fs::path file = target_of(output.path).bag;
-  const bool is_folder =
-      format == PoseFileFormat::kBag && file.extension() != ".bag" && file.extension() != ".mcap";
+  const bool is_bag = format == PoseFileFormat::kBag || format == PoseFileFormat::kOdometry;
+  const bool is_folder = is_bag && file.extension() != ".bag" && file.extension() != ".mcap";
   if (is_folder && fs::exists(file))
     throw InputError(file.string(), "already exists; choose another name for the folder of a bag");
   if (!is_folder) require_safe_output(file, rules);
@@ -177,9 +179,12 @@ void write_poses(const PoseOutput& output, const eval::CovariantTrajectory& path
     case PoseFileFormat::kKitti:
       return write_kitti(output, path.trajectory, rules);
     case PoseFileFormat::kBag:
+    case PoseFileFormat::kOdometry:
       break;
   }
-  datasets::write_bag_trajectory(target_of(output.path), path.trajectory, path.covariances);
+  datasets::write_bag_trajectory(target_of(output.path), path.trajectory, path.covariances,
+                                 format == PoseFileFormat::kOdometry ? datasets::TrajectoryMessage::kOdometry
+                                                                     : datasets::TrajectoryMessage::kPose);
 }
 
 struct TrajectoryArguments {
@@ -352,7 +357,10 @@ int resample(const TrajectoryArguments& arguments) {
 std::vector<Option> with_common_options(std::vector<Option> own, TrajectoryArguments& a) {
   const std::vector<Option> common{
       {"--out", "File to write: .csv, .bag:/TOPIC, .mcap:/TOPIC, else TUM [topic /pose]", &a.output.path},
-      {"--to", "Format of --out: " + enum_list<PoseFileFormat>() + " [by its extension]", &a.output.format},
+      {"--to",
+       "Format of --out: " + enum_list<PoseFileFormat>() +
+           " (nav_msgs/Odometry in a bag, with velocities 0) [by its extension]",
+       &a.output.format},
       {"--format", "Format of the input: " + enum_list<eval::TrajectoryFormat>() + " [detected]",
        &a.files.formats},
       {"--times", "File of time stamps of a KITTI trajectory", &a.files.times},
