@@ -24,9 +24,10 @@ namespace {
 using eval::PoseMatches;
 using eval::Similarity;
 
-constexpr double kMaxNormError = 0.1;      // as of files
-constexpr double kRoundingOfNorm = 1e-15;  // of a normalized quaternion, which is used as it is
-constexpr double kMaxStamp_s = 9.2e9;      // what int64 nanoseconds represent
+constexpr double kMaxNormError = 0.1;  // as of files
+// Of the squared norm of a normalized quaternion, which is used as it is: as 1e-15 of the norm.
+constexpr double kRoundingOfNorm = 2e-15;
+constexpr double kMaxStamp_s = 9.2e9;  // what int64 nanoseconds represent
 constexpr const char* kTimes = "times_ns";
 
 /// Columns of poses, before they are checked.
@@ -40,19 +41,26 @@ struct PoseArrays {
   throw InputError(std::string(argument) + "[" + std::to_string(row) + "]", problem);
 }
 
-StampedPose pose_of(const PoseArrays& arrays, std::size_t i) {
-  const double* const p = arrays.positions.data() + 3 * i;
-  const double* const q = arrays.quaternions_xyzw.data() + 4 * i;
-  const Eigen::Vector3d position(p[0], p[1], p[2]);
-  const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
+/// A row of the arrays.
+struct PoseRow {
+  Timestamp t;
+  const double* p = nullptr;
+  const double* q_xyzw = nullptr;
+};
+
+/// @param i of the row, for messages
+StampedPose pose_of(const PoseRow& row, std::size_t i) {
+  const Eigen::Vector3d position = Eigen::Vector3d::Map(row.p);
+  const Eigen::Quaterniond rotation(row.q_xyzw);
   if (!position.allFinite()) reject_row("positions", i, "is not finite; leave out what is no pose");
-  const double norm = rotation.norm();
+  const double squared_norm = rotation.squaredNorm();
+  if (std::abs(squared_norm - 1.0) <= kRoundingOfNorm) return {row.t, Pose{rotation, position}};
+  const double norm = std::sqrt(squared_norm);
   if (!(std::abs(norm - 1.0) <= kMaxNormError)) {
     reject_row("quaternions_xyzw", i,
                "has norm " + std::to_string(norm) + ", expected 1; the order is x, y, z, w");
   }
-  if (std::abs(norm - 1.0) <= kRoundingOfNorm) return {arrays.stamps[i], Pose{rotation, position}};
-  return {arrays.stamps[i], Pose{Eigen::Quaterniond(rotation.coeffs() / norm), position}};
+  return {row.t, Pose{Eigen::Quaterniond(rotation.coeffs() / norm), position}};
 }
 
 Trajectory trajectory_of(const PoseArrays& arrays, const std::string& frame) {
@@ -62,10 +70,12 @@ Trajectory trajectory_of(const PoseArrays& arrays, const std::string& frame) {
   const py::gil_scoped_release release;
   Trajectory trajectory{.frame = frame};
   trajectory.poses.reserve(arrays.stamps.size());
+  const double* const p = arrays.positions.data();
+  const double* const q = arrays.quaternions_xyzw.data();
   for (std::size_t i = 0; i < arrays.stamps.size(); ++i) {
     if (i > 0 && arrays.stamps[i] <= arrays.stamps[i - 1])
       reject_row(kTimes, i, "is not later than the one before; sort the poses by time");
-    trajectory.poses.push_back(pose_of(arrays, i));
+    trajectory.poses.push_back(pose_of({arrays.stamps[i], p + 3 * i, q + 4 * i}, i));
   }
   return trajectory;
 }
