@@ -201,6 +201,21 @@ TEST(CompareCommand, ABuildWithoutRunsLacksThoseOfBase) {
   EXPECT_EQ(run_program(command).exit_code, 3);
 }
 
+TEST(CompareCommand, JsonOnStandardOutputIsTheFile) {
+  const TemporaryFolder folder;
+  const std::string baseline = STILLPOINT_SOURCE_DIR "/bench/baselines/quick_instructions.json";
+  const fs::path out = folder.path() / "out";
+  const ProgramResult result = run_program({"compare", baseline, baseline, "--json", "--out", out.string()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::stringstream file;
+  file << std::ifstream(out / "compare.json").rdbuf();
+  EXPECT_EQ(result.out, file.str());
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("schema"), 2);
+  EXPECT_EQ(json.at("result"), "same");
+  EXPECT_EQ(json.at("compared"), json.at("pairs"));
+}
+
 TEST(CompareCommand, RejectsAProgramAndAStore) {
   const CompareFixture fixture;
   const ProgramResult result = run_program({"compare", "/bin/true", fixture.folder().path() / "none"});

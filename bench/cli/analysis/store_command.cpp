@@ -264,19 +264,34 @@ int extract(const StoreArguments& arguments) {
   return kExitOk;
 }
 
-int verify_equal(const std::string& first, const std::string& second) {
-  const std::vector<std::string> differences = store_differences(first, second);
-  for (const std::string& difference : differences) std::cout << difference << '\n';
-  std::cout << (differences.empty() ? "equal\n" : fmt::format("{} differences\n", differences.size()));
-  return differences.empty() ? kExitOk : kExitFindings;
+/// What `verify` found.
+struct Findings {
+  std::string kind;    ///< of the table for programs
+  std::string column;  ///< its only one
+  std::string none;    ///< without findings
+  std::vector<std::string> sentences;
+};
+
+int print(const Findings& findings, bool json) {
+  if (json) {
+    report::DataTable table{.kind = findings.kind, .columns = {findings.column}, .rows = {}, .notes = {}};
+    for (const std::string& sentence : findings.sentences) table.rows.push_back({sentence});
+    std::cout << report::data_json(table);
+  } else {
+    for (const std::string& sentence : findings.sentences) std::cout << sentence << '\n';
+    std::cout << (findings.sentences.empty()
+                      ? findings.none + "\n"
+                      : fmt::format("{} {}s\n", findings.sentences.size(), findings.column));
+  }
+  return findings.sentences.empty() ? kExitOk : kExitFindings;
 }
 
 int verify(const StoreArguments& arguments) {
-  if (!arguments.equal.empty()) return verify_equal(arguments.equal.front(), arguments.equal.back());
-  const std::vector<std::string> errors = verify_store(arguments.store);
-  for (const std::string& error : errors) std::cout << error << '\n';
-  std::cout << (errors.empty() ? "no errors found\n" : fmt::format("{} errors\n", errors.size()));
-  return errors.empty() ? kExitOk : kExitFindings;
+  const std::vector<std::string>& pair = arguments.equal;
+  if (!pair.empty())
+    return print({"store_differences", "difference", "equal", store_differences(pair.front(), pair.back())},
+                 arguments.json);
+  return print({"store_verify", "error", "no errors found", verify_store(arguments.store)}, arguments.json);
 }
 
 int collect(const StoreArguments& arguments) {
@@ -379,7 +394,7 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
       store_subcommand({.name = "verify",
                         .summary = "Check the integrity of the database and its files; exit code 1 on errors",
                         .example = "store verify build/bench/store.sqlite",
-                        .options = {equal}},
+                        .options = {equal, {"--json", report::kJsonHelp, &arguments->json}}},
                        arguments, verify),
       store_subcommand({.name = "gc",
                         .summary = "Remove files that are not referenced by any run",

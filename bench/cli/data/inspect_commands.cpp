@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
@@ -24,7 +25,34 @@ struct CheckArguments {
   std::string format;
   std::string rig_file;
   std::vector<std::string> topics;
+  bool json = false;
 };
+
+/// The schema is data_check.
+std::string report_json(const datasets::CheckReport& report) {
+  using Json = nlohmann::ordered_json;
+  Json json = {{"schema", 1},
+               {"sequence", report::clean_line(report.name)},
+               {"format", report.format},
+               {"streams", Json::array()},
+               {"depth_offset_s", report.depth_offset_s},
+               {"notes", Json::array()},
+               {"findings", Json::array()}};
+  for (const datasets::StreamSummary& stream : report.streams)
+    json["streams"].push_back({{"name", stream.name},
+                               {"count", stream.count},
+                               {"rate_hz", stream.rate_hz},
+                               {"first_s", stream.first_s},
+                               {"last_s", stream.last_s},
+                               {"longest_gap_s", stream.longest_gap_s}});
+  for (const std::string& note : report.notes) json["notes"].push_back(report::clean_line(note));
+  for (const datasets::Finding& finding : report.findings)
+    json["findings"].push_back(
+        {{"severity", finding.severity == datasets::Severity::kError ? "error" : "warning"},
+         {"location", report::clean_line(finding.location)},
+         {"text", report::clean_line(finding.text)}});
+  return json.dump(2) + "\n";
+}
 
 int check(const CheckArguments& arguments) {
   std::optional<ProgressLine> line;
@@ -36,7 +64,7 @@ int check(const CheckArguments& arguments) {
       }};
   const datasets::CheckReport report = datasets::check_sequence(arguments.folder, options);
   line.reset();
-  std::cout << datasets::report_text(report);
+  std::cout << (arguments.json ? report_json(report) : datasets::report_text(report));
   return report.exit_code();
 }
 
@@ -55,7 +83,9 @@ Command check_command() {
                   {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
                    &arguments->format},
                   {"--topics", kTopicsHelp, &arguments->topics},
-                  {"--rig", kRigHelp, &arguments->rig_file}},
+                  {"--rig", kRigHelp, &arguments->rig_file},
+                  {"--json", "Print JSON with all findings; see bench/README.md, \"Schemas\"",
+                   &arguments->json}},
       .action = [arguments] { return check(*arguments); }};
 }
 

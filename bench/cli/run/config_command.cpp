@@ -21,7 +21,13 @@ int show(const ConfigRequest& request) {
   return kExitOk;
 }
 
-int list() {
+int list(bool json) {
+  if (json) {
+    report::DataTable table{.kind = "config_list", .columns = {"name"}, .rows = {}, .notes = {}};
+    for (const std::string& name : embedded_names(TomlKind::kConfig)) table.rows.push_back({name});
+    std::cout << report::data_json(table);
+    return kExitOk;
+  }
   for (const std::string& name : embedded_names(TomlKind::kConfig)) std::cout << name << '\n';
   return kExitOk;
 }
@@ -92,7 +98,8 @@ Command config_command() {
   Command list_configs{.name = "list",
                        .summary = "Print the names of the embedded configs and overlays",
                        .example = "config list",
-                       .action = list};
+                       .options = {{"--json", report::kJsonHelp, json.get()}},
+                       .action = [json] { return list(*json); }};
   Command print_reference{.name = "reference",
                           .summary =
                               "Explain all keys: meaning, unit, range, default, section of the paper "

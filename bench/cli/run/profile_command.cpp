@@ -87,7 +87,8 @@ struct SimulatedRun {
 
 Json json_of(const SimulatedRun& run) {
   const auto& [device, deterministic, budget_ms, result, timing] = run;
-  return {{"device", device.title},
+  return {{"schema", 1},
+          {"device", device.title},
           {"source", device.source},
           {"deterministic", deterministic},
           {"sequence", result.sequence},
@@ -197,8 +198,13 @@ void print(const std::vector<StageInstructions>& stages, const CallgrindCounts& 
 
 Json json_of(const InstructionRequest& request, const std::vector<StageInstructions>& stages,
              const CallgrindCounts& counts) {
-  Json json = {{"sequence", request.name}, {"base", request.config.base}, {"variant", request.config.variant},
-               {"frames", request.frames}, {"stages", Json::object()},    {"functions", Json::array()}};
+  Json json = {{"schema", 1},
+               {"sequence", request.name},
+               {"base", request.config.base},
+               {"variant", request.config.variant},
+               {"frames", request.frames},
+               {"stages", Json::object()},
+               {"functions", Json::array()}};
   for (const auto& [stage, count] : stages) json["stages"][stage] = count;
   for (const auto& [function, count] : largest_self_counts(counts)) {
     json["functions"].push_back({{"name", function}, {"self", count}});

@@ -165,8 +165,13 @@ std::string drift_text(const std::vector<DriftRow>& rows) {
 }
 
 std::string profile_text(const Profile& profile, const ProfileTitle& title) {
-  Json json = {{"sequence", title.sequence}, {"base", title.base},   {"variant", title.variant},
-               {"mode", title.mode},         {"cores", title.cores}, {"wall_s", profile.run.wall_s}};
+  Json json = {{"schema", 1},
+               {"sequence", title.sequence},
+               {"base", title.base},
+               {"variant", title.variant},
+               {"mode", title.mode},
+               {"cores", title.cores},
+               {"wall_s", profile.run.wall_s}};
   json.update(profile_json(profile.rows, profile.misses));
   json["waits"] = waits_json(profile.run.summary.waits);
   json["process"] = usage_json(profile.usage, profile.threads);

@@ -132,7 +132,8 @@ std::string profile_text(const HarnessProfile& profile) {
 }
 
 std::string profile_json(const HarnessProfile& profile) {
-  Json json = {{"runs", profile.runs}, {"workers", profile.workers}, {"wall_s", profile.wall_s}};
+  Json json = {
+      {"schema", 1}, {"runs", profile.runs}, {"workers", profile.workers}, {"wall_s", profile.wall_s}};
   for (const Part& part : kWorkerParts) json[part.id] = profile.*part.seconds;
   json["idle_s"] = profile.idle_s();
   for (const Part& part : kOtherParts) json[part.id] = profile.*part.seconds;
