@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes Debian packages: stillpoint (program) and stillpoint-dev (static libraries, headers, package config, examples).
+# Makes Debian packages: stillpoint (program), stillpoint-dev (static libraries, headers, package config, examples) and, for
+# amd64 with the packages of scripts/setup.sh --python, python3-stillpoint.
 # STILLPOINT_CONTACT="NAME <ADDRESS>" names their maintainer.
 #   scripts/package.sh amd64         build and package for any amd64 processor, in build/package-amd64
 #   scripts/package.sh arm64         same for 64-bit ARM, by the cross compiler of scripts/portability.sh; after amd64
@@ -15,6 +16,11 @@ architecture="${1:-amd64}"
 packages="build/package-$architecture"
 fail() { echo "package: error: $*" >&2; exit 2; }
 dependencies() { dpkg-deb -f "$1"/stillpoint_*.deb Depends; }
+# Of the program and, if it is made, the Python package, without this project's own.
+all_dependencies() {
+  dependencies "$1"
+  [[ ! -e "$(echo "$1"/python3-stillpoint_*.deb)" ]] || dpkg-deb -f "$1"/python3-stillpoint_*.deb Depends
+}
 
 # The kernels of the tracker select the instruction set at run time; all else uses the baseline.
 case "$architecture" in
@@ -33,14 +39,21 @@ esac
 [[ $# -le 1 || ( $# == 2 && "$2" == --test ) ]] || fail "unknown option \"${*:2}\"; the option is --test"
 command -v dpkg-shlibdeps >/dev/null || fail "dpkg-dev is missing; run apt-get install dpkg-dev"
 
+# The Python package, unless it is left out; the configuration prints why.
+python_target() {
+  "${inside[@]}" cmake --build "$build" --target help | grep -o '^stillpoint_python\b' | head -n 1 || true
+}
+
 build_packages() {
+  local python
   [[ "$architecture" == amd64 ]] || scripts/portability.sh arm64 chroot
   "${inside[@]}" cmake -S "$sources" -B "$build" "${options[@]}" -DSTILLPOINT_PACKAGES=ON "-DSTILLPOINT_CONTACT=$contact" \
     -DCMAKE_INSTALL_PREFIX=/usr --log-level=WARNING >"$(log_file "configure-package-$architecture")" 2>&1 ||
     show_failure "configure-package-$architecture"
+  mapfile -t python < <(python_target)
   "${inside[@]}" cmake --build "$build" --parallel "$jobs" --target stillpoint stillpoint_module_imageio \
     stillpoint_module_drawing stillpoint_module_video stillpoint_component_geometry stillpoint_component_core stillpoint_component_eval \
-    stillpoint_component_datasets
+    stillpoint_component_datasets stillpoint_component_config "${python[@]}"
   "${inside[@]}" "$sources/scripts/package/documents.sh" "$build/stillpoint" "$build/package_documents" "$contact"
   "${inside[@]}" bash -c 'cd "$1" && rm -f *.deb && cpack -G DEB' - "$build" >"$(log_file "cpack-$architecture")" 2>&1 ||
     show_failure "cpack-$architecture"
@@ -56,7 +69,7 @@ make_chroot() {
   mirror="$(apt-get indextargets --format '$(ORIGIN)|$(SITE)|$(RELEASE)' 'Origin: Debian' |
     awk -F'|' '$3 !~ /-/ { print $2, $3; exit }')"
   [[ -n "$mirror" ]] || fail "apt has no lists of a Debian mirror; run apt-get update"
-  depends="$(dependencies "$packages" | sed 's/ *([^)]*)//g; s/ *|[^,]*//g; s/ //g')"
+  depends="$(all_dependencies "$packages" | tr ',' '\n' | sed 's/ *([^)]*)//g; s/ *|.*//; s/ //g' | grep -v '^stillpoint$' | sort -u | paste -sd,)"
   if [[ "$architecture" == arm64 ]]; then
     ln -sf "$(realpath "$chroots/arm64-emulator")" "$1-emulator"
     emulated=(scripts/emulate.sh "$1-emulator")
@@ -88,7 +101,15 @@ stillpoint device info | head -n 3
 mkdir /root/runs
 cd /root/runs
 stillpoint bench quick
-apt-get purge -q -y stillpoint >/root/log 2>&1 || { cat /root/log; exit 1; }
+purged=(stillpoint)
+if [[ -e "$(echo "$1"/python3-stillpoint_*.deb)" ]]; then
+  purged+=(python3-stillpoint)
+  apt-get install -q -y "$1"/python3-stillpoint_*.deb >/root/log 2>&1 || { cat /root/log; exit 1; }
+  python3 -c 'from stillpoint import Odometry, datasets, eval, store, synth; print(Odometry, len(synth.preset_names()), "presets")'
+  for i in {1..40}; do echo "$i.0 $((i * i)) $i 0 0 0 0 1"; done >poses.tum
+  python3 /usr/share/doc/python3-stillpoint/examples/score_files.py poses.tum poses.tum
+fi
+apt-get purge -q -y "${purged[@]}" >/root/log 2>&1 || { cat /root/log; exit 1; }
 all_files >/root/after
 if dpkg-query -W stillpoint >/dev/null 2>&1; then echo "package: still registered"; exit 1; fi
 diff /root/before /root/after && echo "package: removed without a trace"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Debian packages by CPack: "stillpoint" (program, modules, man page, completion) and "stillpoint-dev" (static libraries,
-# headers, package config, examples). scripts/package.sh sets STILLPOINT_PACKAGES, and generates the documents.
+# Debian packages by CPack: "stillpoint" (program, modules, man page, completion), "stillpoint-dev" (static libraries,
+# headers, package config, examples) and, if it is built, "python3-stillpoint" (the Python package with its examples).
+# scripts/package.sh sets STILLPOINT_PACKAGES, and generates the documents.
 set(STILLPOINT_PACKAGES OFF CACHE BOOL "prepare the installation for Debian packages")
 set(STILLPOINT_CONTACT "The Stillpoint developers <developers@stillpoint.example.org>" CACHE STRING "maintainer of the packages")
 
@@ -11,10 +12,16 @@ if(NOT STILLPOINT_PACKAGES)
 endif()
 
 set(package_documents ${PROJECT_BINARY_DIR}/package_documents)
-foreach(component program library)
+set(components program library)
+if(TARGET stillpoint_python)
+  list(APPEND components python)
+endif()
+foreach(component IN LISTS components)
   set(package stillpoint)
   if(component STREQUAL library)
     set(package stillpoint-dev)
+  elseif(component STREQUAL python)
+    set(package python3-stillpoint)
   endif()
   install(FILES ${package_documents}/copyright ${package_documents}/changelog.gz
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
@@ -24,7 +31,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/scripts/package/completion.bash RENAME still
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 
 set(CPACK_GENERATOR DEB)
-set(CPACK_COMPONENTS_ALL program library)
+set(CPACK_COMPONENTS_ALL ${components})
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -57,4 +64,34 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${library_depends}")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "RGB-D inertial odometry for dynamic scenes (development files)
 Static libraries and headers of the odometry, of the trajectory evaluation
 and of the readers of datasets, for find_package(stillpoint) of CMake.")
+
+if(TARGET stillpoint_python)
+  set(python_folder ${stillpoint_python_folder}/stillpoint)
+  set(python_destination lib/python3/dist-packages/stillpoint)
+  file(GLOB python_files ${PROJECT_SOURCE_DIR}/bench/python/stillpoint/*)
+  install(FILES ${python_files} DESTINATION ${python_destination} COMPONENT python)
+  foreach(module IN LISTS stillpoint_python_modules)
+    install(TARGETS stillpoint_python_${module} LIBRARY DESTINATION ${python_destination} COMPONENT python)
+    install(FILES ${python_folder}/_${module}.pyi DESTINATION ${python_destination} COMPONENT python)
+  endforeach()
+  # Where the module of the program is that reads the rarer image formats.
+  set_target_properties(stillpoint_python_datasets PROPERTIES INSTALL_RPATH /usr/${STILLPOINT_MODULE_FOLDER})
+  install(FILES ${PROJECT_SOURCE_DIR}/scripts/package/python.lintian RENAME python3-stillpoint
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT python)
+  file(GLOB python_examples ${PROJECT_SOURCE_DIR}/core/examples/python/*.py)
+  install(FILES ${python_examples} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-stillpoint/examples COMPONENT python)
+  # Modules are for one version of Python.
+  string(REGEX MATCH "[0-9]+$" next_minor ${stillpoint_python_version})
+  math(EXPR next_minor "${next_minor} + 1")
+  string(CONCAT python_depends "stillpoint (= ${PROJECT_VERSION}), python3 (>= ${stillpoint_python_version}~), "
+         "python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-stillpoint)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${python_depends}")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "RGB-D inertial odometry for dynamic scenes (Python package)
+Trajectory evaluation, stores of results, readers of datasets, rendered
+sequences and the odometry for Python, with numpy arrays.")
+endif()
 include(CPack)
