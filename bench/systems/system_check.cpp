@@ -536,6 +536,8 @@ std::string one_line(std::string text) {
 SystemCheck check_system(const ExternalSystem& system, const CheckOptions& options) {
   if (find_program(system).empty()) {
     const std::string program = program_of(system, with_folders(system, system.command.front()));
+    if (system.runner != ContainerRunner::kNone)
+      return {"the runner of its container is not found; install it, or correct the key runner", ""};
     return {one_line(fmt::format("{} is not found; build it, or correct the first word of command", program)),
             ""};
   }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "bench/analysis/commit_history.h"
+#include "bench/cli/analysis/evo_import.h"
 #include "bench/cli/command_line.h"
 #include "bench/config/spelling.h"
 #include "bench/model/metrics.h"
@@ -330,6 +331,10 @@ int export_to(const StoreArguments& arguments) {
 }
 
 int import_from(const StoreArguments& arguments) {
+  if (is_zip_file(arguments.file)) {
+    print_merge(import_evo(arguments.file, arguments.store));
+    return kExitOk;
+  }
   print_merge(import_store(eval::read_text_file(arguments.file), arguments.file, arguments.store));
   return kExitOk;
 }
@@ -414,7 +419,7 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
                                     {"--force", "Replace an existing export", &arguments->force}}},
                        arguments, export_to),
       store_subcommand({.name = "import",
-                        .summary = "Add the runs of an exported JSON file",
+                        .summary = "Add the runs of an exported JSON file, or a result of evo (.zip)",
                         .example = "store import runs.json",
                         .options = {{"FILE", "Input file", &arguments->file}}},
                        arguments, import_from),
