@@ -106,8 +106,9 @@ std::vector<std::string> page_images(const bench::Store& store, std::span<const 
 namespace {
 
 constexpr std::size_t kMaxTruthPoints = 2000;  // more than a plot can resolve
-// A page of 15 runs of a minute has less than 3 MB: scripts and licenses .3, images 1.2, series .8.
-constexpr std::size_t kImageBudgetBytes = 1'200'000;
+// A page of 15 runs of a minute has less than 3 MB: scripts and licenses .5, images 1, series .8, landmarks
+// .2.
+constexpr std::size_t kImageBudgetBytes = 1'000'000;
 constexpr std::size_t kSeriesBudgetBytes = 800'000;
 constexpr std::size_t kSideImageBytes = 100'000'000;  // of all side files; a server holds them in memory
 constexpr std::size_t kMinFrames = 300;       // of a run, whatever the number of runs: a chart stays readable
