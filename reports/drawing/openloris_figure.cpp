@@ -108,9 +108,11 @@ Panel panel_of(const std::map<int, double>& durations_s, double left, double wid
 
 void draw_header(Drawing& drawing, const Panel& panel, const std::string& scene) {
   const double y = kHeader - 18.0;
+  const std::string heading = fmt::format("{} ({:.0f} s)", scene, panel.duration_s);
+  const double size = kFontSize * 1.1;
   drawing.marks.push_back(Label{{panel.left + 0.5 * panel.width, 30.0},
-                                fmt::format("{} ({:.0f} s)", scene, panel.duration_s),
-                                kFontSize * 1.1,
+                                heading,
+                                size * std::min(1.0, panel.width / text_width(heading, size)),
                                 Anchor::kMiddle,
                                 theme::kBlack});
   drawing.marks.push_back(Polyline{{{panel.left, y}, {panel.left + panel.width, y}}, theme::kBlack, 2.0});

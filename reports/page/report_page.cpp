@@ -2,6 +2,7 @@
 #include "reports/page/report_page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -194,9 +195,37 @@ std::vector<bench::StoredRun> previous_runs(const ReportSubject& subject) {
   return runs;
 }
 
+std::optional<double> headline_value(const bench::StoredRun& run) {
+  const auto found = std::ranges::find(run.metrics, bench::headline_metric().id, &bench::Metric::name);
+  const bool has = run.outcome == bench::Outcome::kOk && found != run.metrics.end();
+  return has && std::isfinite(found->value) ? std::optional(found->value) : std::nullopt;
+}
+
+/// The run with the largest error outside sweeps; null with fewer than two runs that have one.
+const bench::StoredRun* worst_run(std::span<const bench::StoredRun> runs) {
+  const bench::StoredRun* worst = nullptr;
+  std::size_t count = 0;
+  for (const bench::StoredRun& run : runs) {
+    const std::optional<double> value = headline_value(run);
+    if (!value || !run.identity.axis.empty()) continue;
+    ++count;
+    if (worst == nullptr || *value > *headline_value(*worst)) worst = &run;
+  }
+  return count < 2 ? nullptr : worst;
+}
+
+std::string worst_html(const bench::StoredRun& run) {
+  const bench::MetricDescriptor& metric = bench::headline_metric();
+  return fmt::format("The run with the largest {} ({:.4g} {}) is <a href=\"#run={}\">{} on {}, seed {}</a>.",
+                     metric.label, *headline_value(run), metric.unit, escape_html(run.key),
+                     escape_html(system_label(run.identity)), escape_html(run.identity.sequence),
+                     run.identity.seed);
+}
+
 std::string summary_html(const ReportSubject& subject) {
   std::vector<std::string> sentences = outcome_sentences(subject.runs);
   if (const std::string best = best_sentence(subject.runs); !best.empty()) sentences.push_back(best);
+  const bench::StoredRun* const worst = worst_run(subject.runs);
   if (const std::vector<bench::StoredRun> previous = previous_runs(subject); !previous.empty()) {
     const bench::Comparison comparison = bench::compare_runs(previous, subject.runs);
     for (const std::string& sentence : change_sentences(previous.front().identity.build, comparison))
@@ -204,14 +233,16 @@ std::string summary_html(const ReportSubject& subject) {
   }
   std::string text;
   for (const std::string& sentence : sentences) text += "<li>" + escape_html(sentence) + "</li>";
+  if (worst != nullptr) text += "<li>" + worst_html(*worst) + "</li>";
   for (const std::string& gap : subject.gaps) text += "<li class=\"gap\">" + escape_html(gap) + "</li>";
   return "<ul class=\"summary\">" + text + "</ul>";
 }
 
 /// The first table is expanded, the others are collapsed.
 std::string tables_html(const std::vector<ReportTable>& tables, bool published) {
-  const char* none = published ? "No run shares a sequence with a published table."
-                               : "All runs are sweep points; see the curves below.";
+  const char* none =
+      published ? "No plan names a published table to compare with, or no run shares a sequence with one."
+                : "All runs are sweep points; see the curves below.";
   constexpr std::size_t kOpen = 1;
   std::string text;
   std::size_t shown = 0;
@@ -258,9 +289,11 @@ std::string plans_html(const bench::Store& store, const ReportSubject& subject) 
   for (const bench::StoredPlan& plan : subject.plans) {
     text += fmt::format(
         "<h3>{}</h3><pre class=\"command\">stillpoint bench {} --store {}</pre>"
-        "<details><summary>Plan file</summary><pre>{}</pre></details>\n",
-        escape_html(plan.title.empty() ? plan.name : plan.title), escape_html(plan.name),
-        escape_html(store.file().filename().string()), preformatted(plan.text));
+        "<details><summary>Plan file{}</summary><pre>{}</pre></details>\n",
+        escape_html(plan.title.empty() ? plan.name : plan.title), escape_html(plan_argument(plan)),
+        escape_html(store.file().filename().string()),
+        plan_argument(plan) == plan.name ? "" : escape_html(": save it as " + plan.name + ".toml"),
+        preformatted(plan.text));
   }
   return text;
 }
@@ -278,7 +311,9 @@ std::string openloris_html(const bench::Store& store, const ReportSubject& subje
 std::string plans_json(const std::vector<bench::StoredPlan>& plans) {
   Json json = Json::array();
   for (const bench::StoredPlan& plan : plans)
-    json.push_back({{"name", clean_line(plan.name)}, {"runs", plan.run_keys}});
+    json.push_back({{"name", clean_line(plan.name)},
+                    {"argument", clean_line(plan_argument(plan))},
+                    {"runs", plan.run_keys}});
   return json.dump();
 }
 
@@ -289,6 +324,8 @@ std::string data_html(const PageData& data, const ReportSubject& subject,
     for (const bench::OutputFile& file : table_files(table))
       files.push_back({{"name", file.name}, {"text", file.text}});
   }
+  for (const bench::StoredPlan& plan : subject.plans)
+    files.push_back({{"name", plan.name + ".toml"}, {"text", plan.text}});
   std::string text = data_script("index", data.index) + data_script("plans", plans_json(subject.plans));
   return text + data_script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
 }

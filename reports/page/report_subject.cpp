@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/analysis/run_groups.h"
+#include "bench/config/settings.h"
+#include "bench/config/toml_source.h"
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
 #include "reports/tables/paper_tables.h"
@@ -118,6 +120,27 @@ ReportSubject with_newest_build(ReportSubject subject) {
   return subject;
 }
 
+/// The published tables that the plans name (`[table] published`), in the order of the plans.
+std::vector<std::string> published_of(const std::vector<bench::StoredPlan>& plans) {
+  std::vector<std::string> names;
+  const std::vector<std::string> known = bench::published_names();
+  const auto add = [&](const std::string& name) {
+    const bool is_new = std::ranges::find(names, name) == names.end();
+    if (is_new && std::ranges::find(known, name) != known.end()) names.push_back(name);
+  };
+  for (const bench::StoredPlan& plan : plans) {
+    try {
+      for (const bench::Setting& setting : bench::parse_settings(plan.text, "plan " + plan.name)) {
+        const auto* const values = std::get_if<std::vector<std::string>>(&setting.value);
+        if (setting.key == "table.published" && values != nullptr) std::ranges::for_each(*values, add);
+      }
+    } catch (const InputError&) {
+      continue;  // written by hand or by another version; the runs are valid without it
+    }
+  }
+  return names;
+}
+
 std::vector<ReportTable> paper_tables(const ReportSubject& subject) {
   std::vector<ReportTable> tables;
   for (const bench::StoredPlan& plan : subject.plans) {
@@ -161,11 +184,18 @@ ReportSubject report_subject(const bench::Store& store, const std::string& plan)
   const NameChanges changes = disambiguate_names(subject.plans, subject.runs);
   subject.runs = renamed(std::move(subject.runs), changes);
   subject.other_runs = renamed(std::move(subject.other_runs), changes);
-  subject.published = bench::published_names();
+  subject.published = published_of(subject.plans);
   bench::ReadableRuns readable = bench::without_unreadable_files(store, std::move(subject.runs));
   subject.runs = std::move(readable.runs);
   subject.gaps = std::move(readable.gaps);
   return subject;
+}
+
+std::string plan_argument(const bench::StoredPlan& plan) {
+  for (const bench::EmbeddedFile& file : bench::embedded_files()) {
+    if (file.path == "bench/plans/" + plan.name + ".toml" && file.text == plan.text) return plan.name;
+  }
+  return plan.name + ".toml";
 }
 
 std::vector<ReportTable> report_tables(const ReportSubject& subject) {

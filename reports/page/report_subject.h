@@ -39,7 +39,7 @@ struct ReportSubject {
   std::vector<bench::StoredRun> runs;        ///< shown on the page
   std::vector<bench::StoredRun> other_runs;  ///< of other builds, for the comparison
   std::vector<std::string> gaps;             ///< runs with missing or damaged files, one sentence each
-  std::vector<std::string> published;        ///< names of published tables to compare with
+  std::vector<std::string> published;        ///< published tables that plans name to compare with
   std::vector<ReportTable> paper;            ///< the paper's tables that plans of the page reproduce
   PlanAblations ablations;                   ///< of `plans`, with the names that each plan uses
 };
@@ -48,6 +48,10 @@ struct ReportSubject {
 /// @param plan name; empty: all plans, or all runs where there are no plans
 /// @throws InputError if the store has no such plan or no finished runs
 [[nodiscard]] ReportSubject report_subject(const bench::Store& store, const std::string& plan);
+
+/// What `stillpoint bench` is called with to execute a plan again: its name if the program has this plan,
+/// else "NAME.toml", a file with its stored text.
+[[nodiscard]] std::string plan_argument(const bench::StoredPlan& plan);
 
 /// Paper tables, metric tables, module times, and comparisons with published tables.
 [[nodiscard]] std::vector<ReportTable> report_tables(const ReportSubject& subject);

@@ -152,6 +152,20 @@ ReportTable cost_table(std::span<const bench::StoredRun> runs) {
   return table;
 }
 
+namespace {
+
+/// The comparability of a published table, and the sources of the shown rows.
+std::vector<std::string> published_notes(const bench::PublishedTable& published,
+                                         const std::set<std::string>& shown) {
+  std::vector<std::string> notes = published.comparability;
+  for (const auto& [name, source] : published.sources) {
+    if (shown.contains(name)) notes.push_back(fmt::format("{}: {}", name, source));
+  }
+  return notes;
+}
+
+}  // namespace
+
 ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
                                        const bench::PublishedTable& published) {
   const bool is_cost = published.metric == "mean_ms";
@@ -160,11 +174,14 @@ ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
   for (const std::string& column : columns)
     table.columns.push_back({.group = "", .name = column, .unit = published.unit, .decimals = 4});
   if (columns.empty()) return table;
+  std::set<std::string> sources;
   for (const bench::PublishedRow& source : published.rows) {
     TableRow row = published_row(source, columns);
     const bool has_number = std::any_of(row.cells.begin(), row.cells.end(),
                                         [](const TableCell& cell) { return cell.number.has_value(); });
-    if (has_number) table.rows.push_back(std::move(row));
+    if (!has_number) continue;
+    sources.insert(source.source);
+    table.rows.push_back(std::move(row));
   }
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .source = "ours", .cells = {}};
@@ -174,9 +191,7 @@ ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
     }
     table.rows.push_back(std::move(row));
   }
-  table.notes = published.comparability;
-  for (const auto& [name, source] : published.sources)
-    table.notes.push_back(fmt::format("{}: {}", name, source));
+  table.notes = published_notes(published, sources);
   return table;
 }
 
@@ -228,8 +243,11 @@ ReportTable dataset_table(const DatasetTableLayout& layout, std::span<const benc
                              .decimals = metric.decimals,
                              .tooltip = table.description});
   };
-  for (const bench::PublishedRow& system : systems)
+  std::set<std::string> sources;
+  for (const bench::PublishedRow& system : systems) {
     add_column("published", bench::system_label(system) + ", " + system.source);
+    sources.insert(system.source);
+  }
   for (const std::string& variant : layout.variants) add_column("ours", variant);
   for (const std::string& sequence : layout.sequences) {
     TableRow row{.label = sequence, .source = "", .cells = {}};
@@ -245,9 +263,7 @@ ReportTable dataset_table(const DatasetTableLayout& layout, std::span<const benc
       row.cells.push_back(metric_cell(runs_of(runs, variant, sequence), metric.id));
     table.rows.push_back(std::move(row));
   }
-  table.notes = published.comparability;
-  for (const auto& [name, source] : published.sources)
-    table.notes.push_back(fmt::format("{}: {}", name, source));
+  table.notes = published_notes(published, sources);
   return with_means(std::move(table));
 }
 

@@ -312,8 +312,10 @@ std::string counted(std::size_t count, const std::string& noun) {
 std::string glossary_html(const std::set<std::string>& names) {
   std::string items;
   for (const std::string& name : names) {
+    const bench::MetricDescriptor* const metric = bench::find_metric(name);
+    const std::string label = metric == nullptr ? "" : ", " + std::string(metric->label);
     if (const std::string text = bench::tooltip_of(name); !text.empty())
-      items += "<dt>" + escape_html(name) + "</dt><dd>" + escape_html(text) + "</dd>\n";
+      items += "<dt>" + escape_html(name + label) + "</dt><dd>" + escape_html(text) + "</dd>\n";
   }
   return items.empty() ? ""
                        : "<details class=\"glossary\"><summary>What the metrics mean</summary><dl>\n" +

@@ -100,13 +100,16 @@
   }
 
   // --- error over time ---
-  // Largest error of a run in each of BINS intervals of time; all values if there are fewer.
+  // Largest error of a run in each of BINS intervals of time; all values if there are fewer. A frame without an error
+  // is a gap; intervals between frames have the error of the frame before.
   function binned(own, times) {
-    const values = new Array(times.length).fill(null), step = times[1] - times[0];
-    if (own.columns.error_m) own.t.forEach((t, i) => {
+    const values = new Array(times.length).fill(undefined), step = times[1] - times[0];
+    own.t.forEach((t, i) => {
       const at = Math.min(Math.round(t / step), times.length - 1), value = own.columns.error_m[i];
-      if (value !== null && (values[at] === null || value > values[at])) values[at] = value;
+      if (values[at] === undefined || values[at] === null || value > values[at]) values[at] = value;
     });
+    const last = Math.round(own.t[own.frames - 1] / step);
+    values.forEach((value, at) => { if (value === undefined) values[at] = at > 0 && at <= last ? values[at - 1] : null; });
     return values;
   }
 
@@ -121,7 +124,7 @@
     const most = Math.max(...drawn.map((i) => series(i).frames)), count = Math.min(BINS, most);
     const times = Array.from({ length: count }, (_, i) => (i * state.end) / (count - 1 || 1));
     place.append(page.element("figcaption", {}, "Position error after alignment (ATE)" + (most > BINS ? "; largest of each " + (state.end / BINS).toFixed(2) + " s" : "")));
-    const lines = drawn.map((i) => page.line(own[i] + " [m]", "c" + (i % page.LINE_COLORS), { dash: dash(i), spanGaps: true }));
+    const lines = drawn.map((i) => page.line(own[i] + " [m]", "c" + (i % page.LINE_COLORS), { dash: dash(i) }));
     state.plot = page.plot({
       width: place.clientWidth || 900, height: 200, cursor: { drag: { x: true, y: false } }, scales: { x: { time: false } }, axes: page.axes("m"),
       series: [{ label: "time [s]", value: page.number }, ...lines],

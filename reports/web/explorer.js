@@ -80,7 +80,7 @@
     if (!plan) return "";
     const quoted = (text) => "'" + text.replaceAll("'", "'\\''") + "'", own = " (" + plan.name + ")";
     const bare = (text) => (text.endsWith(own) ? text.slice(0, -own.length) : text);
-    return "stillpoint bench " + quoted(plan.name) + " --filter " + quoted(bare(run.label)) + " --filter " + quoted(bare(run.sequence)) + " --store repeated.sqlite";
+    return "stillpoint bench " + quoted(plan.argument) + " --filter " + quoted(bare(run.label)) + " --filter " + quoted(bare(run.sequence)) + " --store repeated.sqlite";
   }
 
   function show(index) {

@@ -325,7 +325,7 @@ await test("a number in a table links to its run", async () => {
   await link.click();
   await page.waitForFunction((wanted) => document.getElementById("runs").dataset.run === wanted, key);
   assert.equal(await page.locator(`#compared a[href="#run=${key}"]`).count(), 1);
-  assert.match(await page.textContent("#repeat-run"), /^stillpoint bench '\w+' --filter '[^']+' --filter '\w+( \+ [^']+)?' --store/);
+  assert.match(await page.textContent("#repeat-run"), /^stillpoint bench '\w+\.toml' --filter '[^']+' --filter '\w+( \+ [^']+)?' --store/);
 });
 
 await test("tables and series can be downloaded", async () => {

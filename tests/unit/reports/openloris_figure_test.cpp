@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "reports/drawing/drawing.h"
 #include "reports/text/evaluation_report.h"
 
 namespace stillpoint::report {
@@ -42,6 +43,21 @@ TEST(OpenlorisFigure, ShowsRatesAndMissingData) {
   EXPECT_TRUE(has_label(figure, "0.250"));
   EXPECT_TRUE(has_label(figure, "-  -"));  // no RPE: never 0
   EXPECT_TRUE(has_label(figure, "DSO"));
+}
+
+TEST(OpenlorisFigure, KeepsALongHeadingInsideItsPanel) {
+  eval::OpenlorisBenchmark benchmark = small_benchmark();
+  const std::string scene = "cafe + " + std::string(200, 'x');
+  benchmark.gt_durations_s[scene] = {{1, 10.0}};
+  benchmark.systems["dso"][scene] = {};
+  const Drawing figure = openloris_figure(benchmark);
+  for (const Mark& mark : figure.marks) {
+    const Label* const label = std::get_if<Label>(&mark);
+    if (label == nullptr || !label->text.starts_with(scene)) continue;
+    EXPECT_LE(label->at.x + 0.5 * text_width(label->text, label->size), figure.width);
+    return;
+  }
+  FAIL() << "no heading";
 }
 
 TEST(OpenlorisFigure, DrawsATrackedSpanAtItsTime) {

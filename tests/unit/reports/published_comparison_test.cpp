@@ -45,6 +45,15 @@ TEST(PublishedComparison, MarksPublishedRowsAndCitesTheirSource) {
   }
 }
 
+TEST(PublishedComparison, CitesOnlyTheSourcesOfShownRowsInTheTable) {
+  bench::PublishedTable published = table();
+  published.sources["B"] = "Another paper";
+  published.rows[1].source = "B";
+  const std::vector<bench::StoredRun> runs = {run_of("vo", "walking_xyz", 0.02)};
+  EXPECT_EQ(published_comparison_table(runs, published).notes,
+            (std::vector<std::string>{"Other images.", "A: A paper"}));
+}
+
 TEST(PublishedComparison, IsEmptyWithoutSharedColumns) {
   EXPECT_EQ(published_comparison(std::vector<bench::StoredRun>{run_of("vo", "market", 0.01)}, table()), "");
 }

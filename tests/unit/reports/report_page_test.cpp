@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/config/toml_source.h"
 #include "bench/model/run_csv.h"
 #include "bench/store/store_writer.h"
 #include "reports/page/chart_data.h"
@@ -142,6 +143,44 @@ TEST(RunSeries, ContainsTheTimesOfInjectedFaults) {
   EXPECT_EQ(faults[1].fault, "blank:start=0.05,duration=0.05,every=0.1");
 }
 
+TEST(ReportSubject, HasThePublishedTablesThatItsPlansName) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  EXPECT_EQ(report_subject(bench::Store(folder.path() / "s"), "").published, std::vector<std::string>());
+  bench::StoreWriter(folder.path() / "s")
+      .record_plan({.name = "q",
+                    .title = "",
+                    .text = "[table]\npublished = [\"tum_fr3_ate\", \"of_another_version\"]\n",
+                    .run_keys = {bench::run_key({.variant = "vo", .sequence = "a"})}});
+  EXPECT_EQ(report_subject(bench::Store(folder.path() / "s"), "").published,
+            std::vector<std::string>{"tum_fr3_ate"});
+}
+
+TEST(PlanArgument, IsAFileUnlessTheProgramHasThePlan) {
+  const std::string text = bench::find_toml("quick", bench::TomlKind::kPlan).text;
+  EXPECT_EQ(plan_argument({.name = "quick", .title = "", .text = text, .run_keys = {}}), "quick");
+  EXPECT_EQ(plan_argument({.name = "quick", .title = "", .text = text + "#", .run_keys = {}}), "quick.toml");
+  EXPECT_EQ(plan_argument({.name = "mine", .title = "", .text = text, .run_keys = {}}), "mine.toml");
+}
+
+TEST(ReportPage, NamesTheRunWithTheLargestErrorIfThereAreSeveral) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const auto page = [&] {
+    const bench::Store store(folder.path() / "s");
+    return report_html(store, report_subject(store, ""));
+  };
+  EXPECT_EQ(page().find("The run with the largest"), std::string::npos);
+  fill_store(folder.path() / "s", {.variant = "<other>", .sequence = "a"});
+  bench::StoreWriter(folder.path() / "s")
+      .record_plan({.name = "p",
+                    .title = "",
+                    .text = "",
+                    .run_keys = {bench::run_key({.variant = "vo", .sequence = "a"}),
+                                 bench::run_key({.variant = "<other>", .sequence = "a"})}});
+  EXPECT_NE(page().find("The run with the largest ATE (0.25 m) is <a href=\"#run="), std::string::npos);
+}
+
 TEST(RunSeries, ContainsRotationsAndAlignedLandmarksStaticOnesFirst) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
@@ -217,7 +256,7 @@ TEST(ReportPage, ExplainsItsMetrics) {
   const std::string page = report_html(store, report_subject(store, ""));
   const std::string text = bench::tooltip_of("ate_rmse_m");
   EXPECT_NE(page.find("<th scope=\"col\" title=\"" + text + "\">a [m]</th>"), std::string::npos);
-  EXPECT_NE(page.find("<dt>ate_rmse_m</dt><dd>" + text + "</dd>"), std::string::npos);
+  EXPECT_NE(page.find("<dt>ate_rmse_m, ATE</dt><dd>" + text + "</dd>"), std::string::npos);
 }
 
 TEST(ReportPage, HasNoExternalReferences) {
