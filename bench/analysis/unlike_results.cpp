@@ -102,6 +102,16 @@ std::pair<const Metric*, const Metric*> same_measure(const RunPair& pair, std::s
   return {nullptr, nullptr};
 }
 
+/// The numbers of processed frames, if they differ: errors over a part of the data are other errors. In real
+/// time, dropped frames are a result.
+std::optional<std::pair<double, double>> unlike_frames(const RunPair& pair) {
+  const Metric* base = find_stored(*pair.base, metric_id::kFrames);
+  const Metric* head = find_stored(*pair.head, metric_id::kFrames);
+  if (base == nullptr || head == nullptr || base->value == head->value) return std::nullopt;
+  if (pair.base->identity.mode == "realtime") return std::nullopt;
+  return std::pair{base->value, head->value};
+}
+
 /// Collects differences, each once.
 class UnlikeList {
  public:
@@ -117,13 +127,9 @@ class UnlikeList {
 
 void add_unlike_metrics(UnlikeList& list, const RunPair& pair) {
   const std::string subject = subject_label(pair.base->identity);
-  const Metric* base_frames = find_stored(*pair.base, metric_id::kFrames);
-  const Metric* head_frames = find_stored(*pair.head, metric_id::kFrames);
-  // Errors over a part of the data are other errors. In real time, dropped frames are a result.
-  if (base_frames != nullptr && head_frames != nullptr && base_frames->value != head_frames->value &&
-      pair.base->identity.mode != "realtime")
-    list.add({"number of processed frames", subject, fmt::format("{}", base_frames->value),
-              fmt::format("{}", head_frames->value)});
+  if (const auto frames = unlike_frames(pair))
+    list.add({"number of processed frames", subject, fmt::format("{}", frames->first),
+              fmt::format("{}", frames->second)});
   for (const Metric& base : pair.base->metrics) {
     const Metric* head = find_stored(*pair.head, base.name);
     if (head == nullptr || same_measure(pair, base.name).first != nullptr) continue;
@@ -174,7 +180,7 @@ bool is_interleaved(const std::vector<RunPair>& pairs) {
 std::optional<eval::Pair> comparable_values(const RunPair& pair, std::string_view metric) {
   const auto [base, head] = same_measure(pair, metric);
   if (base == nullptr || !std::isfinite(base->value) || !std::isfinite(head->value)) return std::nullopt;
-  if (is_impossible(*base) || is_impossible(*head)) return std::nullopt;
+  if (is_impossible(*base) || is_impossible(*head) || unlike_frames(pair)) return std::nullopt;
   return eval::Pair{base->value, head->value};
 }
 

@@ -307,7 +307,7 @@ std::optional<ConventionFinding> swapped_arguments(const Trajectory& gt, const T
           rate_hz(gt), rate_hz(est))};
 }
 
-/// The ground-truth pose at a time, or the closest one before or after it.
+/// The first ground-truth pose at or after a time, or the last one.
 const Pose& pose_near(const Trajectory& gt, Timestamp t) {
   const auto found =
       std::ranges::lower_bound(gt.poses, t.ns, {}, [](const StampedPose& p) { return p.t.ns; });

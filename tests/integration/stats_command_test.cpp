@@ -177,8 +177,8 @@ TEST_F(StatsCommand, FindsTheRunsOfAFaultPlanFileByItsName) {
 
 TEST_F(StatsCommand, FaultsOfRecordedSequencesHaveRows) {
   const std::string text =
-      "variants = [\"vo\"]\nfaults = [\"none\", \"blank:start=1,duration=1\"]\nexpected = [\"survive\", "
-      "\"survive\"]\n[recorded]\nsequences = [\"*\"]\n";
+      "faults = [\"none\", \"blank:start=1,duration=1\"]\nexpected = [\"survive\", \"survive\"]\n"
+      "[recorded]\nsequences = [\"*\"]\nvariants = [\"vo\"]\n";
   const std::string plan = (folder_.path() / "recordings.toml").string();
   std::ofstream(plan) << text;
   bench::StoreWriter writer(file_);

@@ -227,16 +227,16 @@ void print_offsets(const Trajectory& gt, const std::vector<report::EvaluatedRun>
   }
 }
 
-/// Freed lists of 10^6 numbers are used again instead of returned to the system, which would have to clear
+/// Freed buffers of 10^6 numbers are used again instead of returned to the system, which would have to clear
 /// their pages each time.
-void keep_freed_lists() {
-  constexpr int kListBytes = 1 << 30;
-  mallopt(M_MMAP_THRESHOLD, kListBytes);
-  mallopt(M_TRIM_THRESHOLD, kListBytes);
+void keep_freed_buffers() {
+  constexpr int kBufferBytes = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, kBufferBytes);
+  mallopt(M_TRIM_THRESHOLD, kBufferBytes);
 }
 
 int evaluate_files(const EvalArguments& arguments) {
-  keep_freed_lists();
+  keep_freed_buffers();
   if (arguments.files.ground_truth.empty() || arguments.files.estimates.empty()) {
     throw InputError("command line", "eval requires a ground truth and an estimate; try --help");
   }

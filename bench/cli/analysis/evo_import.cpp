@@ -103,6 +103,7 @@ void require_rmse(double rmse, const std::vector<double>& errors, const std::str
 }  // namespace
 
 bool is_zip_file(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return false;  // a pipe would be waited for
   std::ifstream stream(file, std::ios::binary);
   std::string begin(4, '\0');
   stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));

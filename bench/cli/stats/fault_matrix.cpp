@@ -27,8 +27,13 @@ constexpr double kMaxTimeToDetect_s = 0.5;
 /// The variants of a plan, and the names of its external systems.
 /// @throws InputError if a description cannot be read
 std::vector<std::string> compared_names(const BenchPlan& plan) {
-  std::vector<std::string> names = plan.variants;
-  for (const std::string& system : plan.systems) names.push_back(load_external_system(system).variant);
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (const auto* variants : {&plan.variants, &plan.rendered.variants, &plan.recorded.variants})
+    std::ranges::for_each(*variants, add);
+  for (const std::string& system : plan.systems) add(load_external_system(system).variant);
   return names;
 }
 
@@ -246,6 +251,7 @@ int stats_faults(const StatsArguments& arguments) {
                     .notes = {"Cells: outcome, error after recovery, false confidence; (!): not as expected. "
                               "The expectation is that of the first variant."}};
   const std::vector<std::string> variants = compared_names(plan);
+  if (variants.empty()) throw InputError(plan.path, "has no variants and no systems");
   output.header.insert(output.header.end(), variants.begin(), variants.end());
   report::TableRows totals;
   bool all_expected = true;

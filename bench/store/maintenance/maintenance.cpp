@@ -164,6 +164,7 @@ std::string manifest_content(const std::string& manifest) {
   nlohmann::json json = nlohmann::json::parse(manifest, nullptr, false);
   if (!json.is_object()) return manifest;
   for (const char* member : kVolatileMembers) json.erase(member);
+  if (json.contains("system")) json["system"].erase("folder");  // of its description on the machine
   return json.dump();
 }
 

@@ -73,11 +73,13 @@ TEST(UnlikeResults, APartOfTheFramesIsNotComparedWithAll) {
   UnlikeSides sides;
   for (StoredRun& run : sides.base) run.metrics.push_back({"frames", "", "", 600.0});
   for (StoredRun& run : sides.head) run.metrics.push_back({"frames", "", "", 300.0});
+  for (StoredRun& run : sides.head) run.metrics.front().value *= 3.0;
   expect_unlike(sides, "number of processed frames");
   for (std::vector<StoredRun>* side : {&sides.base, &sides.head}) {
     for (StoredRun& run : *side) run.identity.mode = "realtime";  // a slower program drops frames
   }
   EXPECT_TRUE(sides.compared().unlike.empty());
+  EXPECT_EQ(sides.compared().result(), ChangeClass::kWorse);
 }
 
 TEST(UnlikeResults, ANegativeErrorIsNoImprovement) {
