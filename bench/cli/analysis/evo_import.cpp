@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/analysis/evo_import.h"
 
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +20,7 @@
 
 #include "bench/model/json_problem.h"
 #include "bench/model/metrics.h"
+#include "bench/store/store.h"
 #include "bench/store/store_writer.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
@@ -27,12 +33,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The files of an archive, in a folder that is removed with this object.
+/// The files of an archive, in a temporary folder that is removed with this object.
 class ExtractedArchive {
  public:
-  explicit ExtractedArchive(const fs::path& archive)
-      : folder_(fs::temp_directory_path() / fmt::format("stillpoint-evo-{}", getpid())) {
-    fs::remove_all(folder_);
+  explicit ExtractedArchive(const fs::path& archive) : ExtractedArchive() {
+    // The object exists from here on: its destructor runs if the extraction throws.
     static_cast<void>(datasets::extract_archive(archive, folder_, {}, {}));
   }
   ~ExtractedArchive() {
@@ -51,6 +56,13 @@ class ExtractedArchive {
   }
 
  private:
+  ExtractedArchive() {
+    std::string name = (fs::temp_directory_path() / "stillpoint-evo-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw InputError(name, std::string("cannot be created: ") + std::strerror(errno) + "; set TMPDIR");
+    folder_ = name;
+  }
+
   fs::path folder_;
 };
 
@@ -71,15 +83,58 @@ std::vector<double> numbers_of(const std::string& bytes, const std::string& plac
   return numbers;
 }
 
-/// The metric that a label names: "APE (m)", "RPE (deg)".
-std::string_view metric_of(const std::string& label, const std::string& place) {
-  if (label == "APE (m)") return metric_id::kAte;
-  if (label == "APE (deg)") return metric_id::kAteRotation;
-  if (label == "RPE (m)") return metric_id::kRpeTranslationPerDelta;
-  if (label == "RPE (deg)") return metric_id::kRpeRotationPerDelta;
-  throw InputError(place, "has the label \"" + label +
-                              "\"; expected one of APE (m), APE (deg), RPE (m), RPE (deg): evo's "
-                              "--pose_relation trans_part or angle_deg");
+/// What evo writes for --pose_relation trans_part or angle_deg. Labels alone are ambiguous: that of
+/// point_distance is also "RPE (m)".
+struct EvoMetric {
+  std::string_view label;
+  std::string_view title;  ///< begin
+  std::string_view id;
+};
+constexpr std::array<EvoMetric, 4> kEvoMetrics = {
+    {{"APE (m)", "APE w.r.t. translation part", metric_id::kAte},
+     {"APE (deg)", "APE w.r.t. rotation angle", metric_id::kAteRotation},
+     {"RPE (m)", "RPE w.r.t. translation part", metric_id::kRpeTranslationPerDelta},
+     {"RPE (deg)", "RPE w.r.t. rotation angle", metric_id::kRpeRotationPerDelta}}};
+
+std::string_view metric_of(const std::string& label, const std::string& title, const std::string& place) {
+  for (const EvoMetric& metric : kEvoMetrics) {
+    if (label == metric.label && title.starts_with(metric.title)) return metric.id;
+  }
+  throw InputError(place, "has the label \"" + label + "\" and the title \"" +
+                              title.substr(0, title.find('\n')) +
+                              "\"; expected APE or RPE, in m or deg, of evo's --pose_relation trans_part or "
+                              "angle_deg");
+}
+
+/// The first specific name in a path, from its end; empty if there is none.
+/// @param excluded a name that is not specific
+std::string specific_name(const fs::path& file, const std::string& excluded) {
+  constexpr std::array<std::string_view, 22> kGeneralNames = {
+      "",          ".",        "..",        "groundtruth", "ground_truth",     "gt",
+      "reference", "ref",      "data",      "mav0",        "trajectory",       "state_groundtruth_estimate0",
+      "traj",      "estimate", "estimated", "est",         "cameratrajectory", "keyframetrajectory",
+      "poses",     "pose",     "result",    "results"};
+  for (fs::path path = file.relative_path(); !path.empty(); path = path.parent_path()) {
+    const std::string name = path == file.relative_path() ? path.stem().string() : path.filename().string();
+    std::string lower = name;
+    std::ranges::transform(lower, lower.begin(), [](unsigned char letter) { return std::tolower(letter); });
+    if (name != excluded && std::ranges::find(kGeneralNames, lower) == kGeneralNames.end()) return name;
+  }
+  return "";
+}
+
+/// The names given, else those of the paths of the result.
+EvoNames names_of(const Json& info, EvoNames names, const std::string& place) {
+  const auto require = [&](std::string& name, const char* key, const char* option) {
+    const std::string path = info.at(key).get<std::string>();
+    if (name.empty()) name = specific_name(path, names.sequence);
+    if (name.empty())
+      throw InputError(place,
+                       fmt::format("names no {0}: its {1} is \"{2}\"; pass --{0} NAME", option, key, path));
+  };
+  require(names.sequence, "ref_name", "sequence");
+  require(names.system, "est_name", "system");
+  return names;
 }
 
 /// The title in one line.
@@ -100,6 +155,29 @@ void require_rmse(double rmse, const std::vector<double>& errors, const std::str
                          rmse, errors.size(), expected));
 }
 
+/// Whether the store has this result.
+/// @throws InputError if it has another one of the same metric, system and sequence
+bool is_present(const fs::path& store, const RunIdentity& identity, const Metric& metric) {
+  if (!fs::exists(store)) return false;
+  const Store stored(store);
+  std::vector<StoredRun> runs = stored.run_headers();
+  std::erase_if(runs, [&](const StoredRun& run) {
+    return run.identity.system != identity.system || run.identity.sequence_id != identity.sequence_id;
+  });
+  for (const StoredRun& run : stored.with_details(std::move(runs))) {
+    const auto known = std::ranges::find(run.metrics, metric.name, &Metric::name);
+    if (known == run.metrics.end()) continue;
+    if (known->protocol == metric.protocol && known->value == metric.value) return true;
+    throw InputError(
+        store.string(),
+        fmt::format("has another {} of {} on {}: {:g} by \"{}\", not {:g} by \"{}\"; pass another "
+                    "--store, or another name by --system",
+                    metric.name, identity.system, identity.sequence, known->value, known->protocol,
+                    metric.value, metric.protocol));
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_zip_file(const fs::path& file) {
@@ -110,33 +188,36 @@ bool is_zip_file(const fs::path& file) {
   return begin == std::string("PK\x03\x04");
 }
 
-MergeReport import_evo(const fs::path& file, const fs::path& store) {
+MergeReport import_evo(const fs::path& file, const fs::path& store, const EvoNames& given) {
+  const std::string place = file.string();
   const ExtractedArchive archive(file);
   try {
     const Json info = Json::parse(archive.text("info.json", file));
     const double rmse = Json::parse(archive.text("stats.json", file)).at("rmse").get<double>();
-    require_rmse(rmse, numbers_of(archive.text("error_array.npy", file), file.string()), file.string());
-    const std::string_view metric = metric_of(info.at("label").get<std::string>(), file.string());
-    const std::string estimate = fs::path(info.at("est_name").get<std::string>()).stem().string();
-    const std::string reference = info.at("ref_name").get<std::string>();
-    const RunIdentity identity{.system = estimate,
-                               .variant = estimate,
-                               .sequence = fs::path(reference).stem().string(),
-                               .sequence_id = "evo-" + hash_text(content_hash(reference)),
-                               .config_hash = hash_text(content_hash(eval::read_text_file(file))),
+    require_rmse(rmse, numbers_of(archive.text("error_array.npy", file), place), place);
+    const std::string label = info.at("label").get<std::string>();
+    const std::string title = info.at("title").get<std::string>();
+    const std::string_view id = metric_of(label, title, place);
+    const Metric metric{.name = std::string(id),
+                        .protocol = protocol_of(title),
+                        .unit = std::string(find_metric(id)->unit),
+                        .value = rmse};
+    const EvoNames names = names_of(info, given, place);
+    const RunIdentity identity{.system = names.system,
+                               .variant = names.system,
+                               .sequence = names.sequence,
+                               .sequence_id = "evo-" + hash_text(content_hash(names.sequence)),
+                               .config_hash = hash_text(content_hash(label + "\n" + title)),
                                .build = "imported",
                                .mode = "external"};
+    if (is_present(store, identity, metric)) return {.added = 0, .present = 1};
     StoreWriter writer(store);
-    if (writer.is_done(run_key(identity))) return {.added = 0, .present = 1};
     if (writer.acquire(identity) != RunLease::kGranted)
       throw InputError(store.string(), "is written by another process; try again");
-    writer.finish(identity, {.metrics = {{.name = std::string(metric),
-                                          .protocol = protocol_of(info.at("title").get<std::string>()),
-                                          .unit = std::string(find_metric(metric)->unit),
-                                          .value = rmse}}});
+    writer.finish(identity, {.metrics = {metric}});
     return {.added = 1, .present = 0};
   } catch (const Json::exception& error) {
-    throw InputError(file.string(), "is no result of evo: " + json_problem(error));
+    throw InputError(place, "is no result of evo: " + json_problem(error));
   }
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "bench/store/maintenance/maintenance.h"
 
@@ -13,11 +14,20 @@ namespace stillpoint::bench {
 /// Whether a file begins like a zip file.
 [[nodiscard]] bool is_zip_file(const std::filesystem::path& file);
 
-/// Adds one run, whose system is the name of the estimate and whose sequence is that of the reference. Its
-/// metric is the RMSE: `ate_rmse_m`, `ate_rmse_deg`, `rpe_rmse_m` or `rpe_rmse_deg`, by the label; the title
-/// is its protocol.
-/// @throws InputError if the file is no such result, the label has another unit, or the RMSE is not that of
-/// the errors, sqrt(mean e^2)
-[[nodiscard]] MergeReport import_evo(const std::filesystem::path& file, const std::filesystem::path& store);
+/// Names that replace those in the result; empty: from its paths.
+struct EvoNames {
+  std::string system;
+  std::string sequence;
+};
+
+/// Adds one run. Its sequence is named by the path of the reference, its system by that of the estimate: the
+/// file without its extension, or the first folder above it that does not have a general name such as
+/// "groundtruth" (for systems also: the name of the sequence). Its metric is the RMSE: `ate_rmse_m`,
+/// `ate_rmse_deg`, `rpe_rmse_m` or `rpe_rmse_deg`, by label and title; the title is its protocol.
+/// @throws InputError if the file is no such result, has another pose relation or unit, names no system or
+/// sequence, the RMSE is not that of the errors, sqrt(mean e^2), or the store has another value or protocol
+/// of this metric, system and sequence
+[[nodiscard]] MergeReport import_evo(const std::filesystem::path& file, const std::filesystem::path& store,
+                                     const EvoNames& names);
 
 }  // namespace stillpoint::bench

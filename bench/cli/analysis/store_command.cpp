@@ -160,6 +160,7 @@ struct StoreArguments {
   std::string run;
   std::string file;
   std::vector<std::string> equal;
+  EvoNames evo;
   bool mcap = false;
   bool numbers = false;
   bool tidy = false;
@@ -332,9 +333,12 @@ int export_to(const StoreArguments& arguments) {
 
 int import_from(const StoreArguments& arguments) {
   if (is_zip_file(arguments.file)) {
-    print_merge(import_evo(arguments.file, arguments.store));
+    print_merge(import_evo(arguments.file, arguments.store, arguments.evo));
     return kExitOk;
   }
+  if (!arguments.evo.system.empty() || !arguments.evo.sequence.empty())
+    throw InputError(arguments.file,
+                     "is no result of evo (.zip): its runs have names; omit --system and --sequence");
   print_merge(import_store(eval::read_text_file(arguments.file), arguments.file, arguments.store));
   return kExitOk;
 }
@@ -418,11 +422,14 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
                                     {"--tidy", "CSV with a row for each run and metric", &arguments->tidy},
                                     {"--force", "Replace an existing export", &arguments->force}}},
                        arguments, export_to),
-      store_subcommand({.name = "import",
-                        .summary = "Add the runs of an exported JSON file, or a result of evo (.zip)",
-                        .example = "store import runs.json",
-                        .options = {{"FILE", "Input file", &arguments->file}}},
-                       arguments, import_from),
+      store_subcommand(
+          {.name = "import",
+           .summary = "Add the runs of an exported JSON file, or a result of evo (.zip)",
+           .example = "store import runs.json",
+           .options = {{"FILE", "Input file", &arguments->file},
+                       {"--system", "Name of evo's estimate [of its path]", &arguments->evo.system},
+                       {"--sequence", "Name of evo's reference [of its path]", &arguments->evo.sequence}}},
+          arguments, import_from),
       salvage_command(arguments)};
 }
 
