@@ -110,6 +110,13 @@ class NameParser {
         break;
     }
     append_letter(letter, style);
+    if ((static_cast<unsigned char>(letter) & 0xc0U) == 0xc0U) append_continuation(style);
+  }
+
+  /// The other bytes of a character of UTF-8, so that an argument is not a part of one.
+  void append_continuation(const SpanStyle& style) {
+    while (!rest_.empty() && (static_cast<unsigned char>(rest_.front()) & 0xc0U) == 0x80U)
+      append_letter(take(), style);
   }
 
   void read_script(char kind, SpanStyle style, int depth) {

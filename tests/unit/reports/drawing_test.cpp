@@ -51,6 +51,7 @@ TEST(NameSpans, DrawIndicesExponentsGreekLettersAndSmallCapitals) {
   EXPECT_EQ(spans_text("$\\alpha = -2 \\times \\Sigma_k$"), "[α=−2×Σ][_k]");
   EXPECT_EQ(spans_text("\\textsc{Orb} a\\_b \\& c"), "[O]['RB][ a_b & c]");
   EXPECT_EQ(spans_text("$v_\\text{max}$"), "[v][_max]");
+  EXPECT_EQ(spans_text("$x_é\u2009y^αβ$ é"), "[x][_é][\u2009y][^α][β é]");
 }
 
 TEST(NameSpans, KeepAnythingElse) {
