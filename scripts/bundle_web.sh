@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes the bundles in reports/web/vendor and their licenses anew from npm. Only for who changes a version in
-# reports/web/vendor/package.json: the bundles are checked in, and npm is needed only to rebuild them. three.js is
-# stored as the page contains it: compressed, and as text.
+# Rebuilds the bundles in reports/web/vendor and their licenses from npm. Needed only after a change of a version in
+# reports/web/vendor/package.json: the bundles are checked in. three.js is stored as the page contains it: compressed,
+# and as text.
 #   scripts/bundle_web.sh
 set -euo pipefail
 vendor="$(cd "$(dirname "${BASH_SOURCE[0]}")/../reports/web/vendor" && pwd)"

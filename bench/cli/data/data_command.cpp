@@ -319,7 +319,7 @@ int play(const std::string& folder, double speed) {
     if (interrupt_requested()) return kExitInterrupted;
     std::cout << row.text << '\n';
     if (speed > 0.0) std::cout.flush();
-    if (!std::cout) return kExitFindings;  // its reader ended
+    if (!std::cout) return kExitFindings;  // the pipe was closed
   }
   return kExitOk;
 }
