@@ -134,7 +134,7 @@
     drawPath(context) {
       const { series, view, shown, span } = this;
       const xs = series.columns[view.across], ys = series.columns[view.up], error = series.columns.error_m;
-      const largest = error ? Math.max(...error.map((value) => value || 0), 1e-9) : 1;
+      const largest = error ? error.reduce((a, b) => Math.max(a, b), 1e-9) : 1;
       context.lineWidth = 2.4;
       for (let i = 1; i < series.frames; ++i) {
         if (xs[i] === null || xs[i - 1] === null) continue;

@@ -36,7 +36,7 @@
       this.controls.addEventListener("change", () => this.render());
       this.controls.addEventListener("end", () => this.tellEye());
       canvas.addEventListener("keydown", (event) => this.onKey(event));
-      canvas.addEventListener("pointerdown", (event) => { this.pressed = [event.offsetX, event.offsetY]; });
+      canvas.addEventListener("pointerdown", (event) => { this.pressed = event.button === 0 ? [event.offsetX, event.offsetY] : null; });
       canvas.addEventListener("pointerup", (event) => this.onClick(event));
     }
 
@@ -75,7 +75,7 @@
       this.content = new three.Group();
       this.scene.add(this.content);
       this.addGrid();
-      const largest = Math.max(1e-9, ...paths.flatMap((path) => path.error || []));
+      const largest = paths.reduce((most, path) => (path.error || []).reduce((a, b) => Math.max(a, b), most), 1e-9);
       for (const path of paths) this.addPath(path, largest);
       this.markers = paths.map((path) => this.addMarker(path));
       this.current = paths.map(() => null);
@@ -112,7 +112,7 @@
       const { xyz, ends } = segments(path), { shows } = this;
       if (!xyz.length) return;
       const byError = shows.has("error") && path.error;
-      const colors = byError && ends.flatMap((i) => new this.three.Color(page.rampColor((path.error[i] || 0) / largest)).toArray());
+      const colors = byError && ends.flatMap((i) => new this.three.Color(path.error[i] === null ? path.color : page.rampColor(path.error[i] / largest)).toArray());
       this.lines(xyz, { color: path.color, colors, width: path.width, dash: path.dash.length ? path.dash : null });
       if (path.q && shows.has("cameras")) this.addCameras(path);
       if (path.loops && shows.has("loops")) this.addLoops(path);
@@ -191,10 +191,11 @@
       this.tellEye();
     }
 
-    // A click, not the end of a movement, selects the time of the nearest pose.
+    // A click of the main button, not the end of a movement, selects the time of the nearest pose.
     onClick(event) {
-      const moved = Math.hypot(event.offsetX - this.pressed[0], event.offsetY - this.pressed[1]), { clientWidth, clientHeight } = this.canvas;
-      if (moved > 3) return;
+      const { pressed } = this, { clientWidth, clientHeight } = this.canvas;
+      this.pressed = null;
+      if (!pressed || event.button !== 0 || Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) > 3) return;
       let best = null, distance = CLICK_PX;
       const point = new this.three.Vector3();
       for (const path of this.paths) path.x.forEach((x, i) => {

@@ -143,14 +143,34 @@ await test("paths are shown in 3-D with cameras and error colors, by keyboard an
   const canvas = page.locator("#compare-scene"), time = () => page.textContent("#compare-at");
   await canvas.scrollIntoViewIfNeeded();
   const box = await canvas.boundingBox(), middle = [box.x + box.width / 2, box.y + box.height / 2];
+  // A press outside of the canvas that ends in it.
+  await canvas.evaluate((element) => element.dispatchEvent(new PointerEvent("pointerup", { button: 0 })));
   await page.mouse.move(...middle);
   await page.mouse.down();
   await page.mouse.move(middle[0] + 60, middle[1] + 10, { steps: 3 });
   await page.mouse.up();
   assert.notEqual(await eyeOf(page), eyes[3], "turned by dragging");
   const before = await time();
-  for (let part = 0.1; part < 1 && await time() === before; part += 0.02) await page.mouse.click(box.x + box.width * part, box.y + box.height / 2);
+  for (let part = 0.1; part < 1 && await time() === before; part += 0.02) {
+    const place = [box.x + box.width * part, box.y + box.height / 2];
+    await page.mouse.click(...place, { button: "right" });
+    assert.equal(await time(), before, "the right button selects no time");
+    await page.mouse.click(...place);
+  }
   assert.notEqual(await time(), before, "a click on a path selects its time");
+});
+
+await test("a path of 150,000 frames is colored by error, and in its own color where the error is unknown", async () => {
+  const [largest, color] = await page.evaluate(async () => {
+    const count = 150000, points = [0, 1, ...Array(count - 2).fill(null)], error = [null, null, ...Array(count - 2).fill(0.5)];
+    const scene = await window.stillpoint.pathScene(document.createElement("canvas"), () => {}, () => {});
+    const path = { x: points, y: points, z: points, t: points, q: null, error, color: "#ff0000", dash: [], width: 1 };
+    const most = scene.show([path], new Set(["error"]), [1, 1, 1, 0, 0, 0]);
+    const line = scene.content.children.find(({ geometry }) => geometry.attributes.instanceColorStart);
+    return [most, [...line.geometry.attributes.instanceColorStart.array.slice(0, 3)]];
+  });
+  assert.equal(largest, 0.5);
+  assert.deepEqual(color, [1, 0, 0]);
 });
 
 await test("without WebGL the top view is shown, and why", async () => {
