@@ -285,6 +285,19 @@ std::string trajectory_text(const RunResult& result) {
   return result.outcome == Outcome::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
 }
 
+namespace {
+
+/// Removes what only an earlier run wrote. Its images are removed before this run may write its own.
+void remove_other_outputs(const std::filesystem::path& folder, const std::vector<OutputFile>& written) {
+  for (const std::string& name : run_layout().names) {
+    std::error_code ignored;
+    if (name != "images" && std::ranges::find(written, name, &OutputFile::name) == written.end())
+      std::filesystem::remove(folder / name, ignored);
+  }
+}
+
+}  // namespace
+
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest) {
   std::vector<OutputFile> files;
   files.push_back({"trajectory.tum", trajectory_text(result)});
@@ -304,6 +317,7 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
     files.push_back({"keyframes.csv", keyframe_text(result.run.loops->report.keyframes)});
   }
   write_files(folder, files);
+  remove_other_outputs(folder, files);
 }
 
 OutputLayout run_layout() {

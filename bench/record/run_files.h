@@ -41,7 +41,7 @@ struct RunManifest {
 /// Text of trajectory.tum; that of an interrupted run starts with the comment "# partial".
 [[nodiscard]] std::string trajectory_text(const RunResult& result);
 
-/// Writes the files: all of them, or none.
+/// Writes the files: all of them, or none. Then removes the other files of an earlier run, except images.
 /// @throws InputError if the folder cannot be written
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest);
 

@@ -240,18 +240,24 @@ double mean_rate_hz(const std::vector<Timestamp>& times) {
   return static_cast<double>(times.size() - 1) / seconds_between(times.front(), times.back());
 }
 
+void remove_images(const fs::path& folder) {
+  if (!fs::is_directory(folder)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".jpg") fs::remove(entry.path());
+  }
+  if (fs::is_empty(folder)) fs::remove(folder);
+}
+
 namespace {
 
 constexpr int kMaxWidth_px = 400;
 constexpr int kJpegQuality = 70;  // text and thin circles stay legible
 
 void prepare_folder(const fs::path& folder) {
+  remove_images(folder);
   std::error_code problem;
   fs::create_directories(folder, problem);
   if (problem) throw InputError(folder.string(), "cannot be created (" + problem.message() + ")");
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".jpg") fs::remove(entry.path());
-  }
 }
 
 std::vector<std::optional<Pose>> ground_truth_of(const datasets::SequenceInfo& info) {

@@ -114,6 +114,9 @@ class RunVideo {
 /// Mean frame rate [Hz]; 30 Hz with fewer than two stamps.
 [[nodiscard]] double mean_rate_hz(const std::vector<Timestamp>& times);
 
+/// Deletes the *.jpg files of a folder, and the folder if it is then empty. It need not exist.
+void remove_images(const std::filesystem::path& folder);
+
 /// Writes annotated images of a run's worst frames only: keeps `000042.jpg` for frame 42 if that is among the
 /// frames with the largest frame-to-frame error so far; files that drop out of this set are deleted. At most
 /// 400 px wide, about 25 kB each.

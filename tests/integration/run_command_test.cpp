@@ -158,6 +158,22 @@ TEST(RunCommand, WritesImagesOfTheWorstFramesOnly) {
   const ProgramResult result = run_program(run_of(rendered_sequence(), out.path(), {"--images", "3"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(names_in(out.path() / "images").size(), 3u);
+  EXPECT_TRUE(std::filesystem::exists(out.path() / "landmarks.csv"));
+}
+
+TEST(RunCommand, RemovesWhatOnlyAnEarlierRunWrote) {
+  const TemporaryFolder out;
+  const auto run = [&](const std::vector<std::string>& options) {
+    return run_program(run_of(rendered_sequence(), out.path(), options)).exit_code;
+  };
+  ASSERT_EQ(run({"--max-frames", "20"}), 0);
+  const std::vector<std::string> names = names_in(out.path());
+  ASSERT_EQ(run({"--max-frames", "20", "--images", "1", "--dump", "labels", "--imu-rate"}), 0);
+  EXPECT_EQ(names_in(out.path()).size(), names.size() + 4);
+  out.write("notes.txt", "of the user");
+  ASSERT_EQ(run({"--max-frames", "20"}), 0);
+  EXPECT_TRUE(std::filesystem::remove(out.path() / "notes.txt"));
+  EXPECT_EQ(names_in(out.path()), names);
 }
 
 TEST(RunCommand, WritesEachVariantToItsOwnFolder) {

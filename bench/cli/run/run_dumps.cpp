@@ -67,6 +67,8 @@ RunDumps::RunDumps(DumpRequest request, const datasets::SequenceInfo& info, cons
   if (!request_.video.empty()) video_.emplace(request_.video, style, report::mean_rate_hz(info.frame_times));
   if (request_.images > 0)
     worst_frames_.emplace(request_.folder / kImagesFolder, request_.images, style, info);
+  else
+    report::remove_images(request_.folder / kImagesFolder);
   if (!request_.map_cloud.empty())
     map_.emplace(info.rig.camera, datasets::VoxelMapOptions{.voxel_m = request_.map_voxel_m});
   if (!request_.mcap.empty()) {
