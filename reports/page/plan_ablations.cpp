@@ -19,8 +19,9 @@ namespace {
 std::vector<bench::StoredRun> runs_of_system(const bench::StoredPlan& plan, const std::string& base,
                                              std::span<const bench::StoredRun> runs) {
   const std::set<std::string> keys(plan.run_keys.begin(), plan.run_keys.end());
-  const auto of_base =
-      std::ranges::find_if(runs, [&](const bench::StoredRun& run) { return run.identity.variant == base; });
+  const auto of_base = std::ranges::find_if(runs, [&](const bench::StoredRun& run) {
+    return run.identity.variant == base && keys.contains(run.key);
+  });
   const std::string system = of_base == runs.end() ? "stillpoint" : of_base->identity.system;
   std::vector<bench::StoredRun> found;
   std::copy_if(runs.begin(), runs.end(), std::back_inserter(found), [&](const bench::StoredRun& run) {

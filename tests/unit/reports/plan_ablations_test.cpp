@@ -13,6 +13,7 @@ namespace {
 struct VariantErrors {
   std::string variant;
   std::vector<double> by_seed;  ///< ATE [m]
+  std::string system = "stillpoint";
 };
 
 /// Stores one run per variant and seed, and a plan over them.
@@ -22,7 +23,8 @@ void add_plan(const std::filesystem::path& file, const std::string& name, const 
   bench::StoredPlan plan{.name = name, .title = "", .text = text, .run_keys = {}};
   for (const VariantErrors& variant : variants) {
     for (std::size_t i = 0; i < variant.by_seed.size(); ++i) {
-      const bench::RunIdentity identity{.variant = variant.variant,
+      const bench::RunIdentity identity{.system = variant.system,
+                                        .variant = variant.variant,
                                         .sequence = "walking",
                                         .config_hash = variant.variant,
                                         .seed = static_cast<std::int64_t>(i) + 1};
@@ -79,6 +81,14 @@ TEST(PlanAblations, EveryPlanWithABaseHasItsOwn) {
   EXPECT_NE(page.find("relative to a, base of plan p"), std::string::npos);
   EXPECT_NE(page.find("relative to b, base of plan q"), std::string::npos);
   EXPECT_NE(page.find("Plan r has no ablation: its base c has no run on this page."), std::string::npos);
+}
+
+TEST(PlanAblations, TheBaseIsThatOfThePlanAndNotOfAnotherSystem) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s";
+  add_plan(file, "p", "ablation_base = \"a\"\n", {{"a", {0.01}}, {"b", {0.02}}});
+  add_plan(file, "q", "ablation_base = \"a\"\n", {{"a", {0.03}, "a"}, {"a+few", {0.04}, "a"}});
+  EXPECT_EQ(report_subject(bench::Store(file), "").ablations.ablations.size(), 2u);
 }
 
 TEST(PlanAblations, OverlaysAreComparedWithTheVariantThatTheyExtend) {
