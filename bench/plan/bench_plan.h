@@ -73,8 +73,8 @@ struct SweepAxis {
   std::vector<double> values;
 };
 
-/// Name of an undisturbed run in `BenchPlan::faults`.
 inline constexpr std::string_view kFaultSeparator = " + ";  ///< of sequence and fault in names of runs
+/// Name of an undisturbed run in `BenchPlan::faults`.
 inline constexpr std::string_view kNoFault = "none";
 
 /// Values of `BenchPlan::expected`.
