@@ -228,12 +228,17 @@ TEST(ExternalSystem, IsPlayedAtTheRateOfTheSensors) {
 
 TEST(ExternalSystem, AStoredRunIsRepeatedWithItsDescription) {
   const TemporaryFolder folder;
-  write_replay(folder, "replay", "0.01");
+  const auto describe = [&folder](const std::string& error) {
+    folder.write("replay.toml", "name = \"re+play\"\ncommand = [\"" + std::string(kReplay) +
+                                    "\", \"--error\", \"" + error +
+                                    "\", \"run\", \"{sequence}\", \"--out\", \"{out}\"]\n");
+  };
+  describe("0.01");
   EXPECT_EQ(bench_system(folder, "replay.toml").exit_code, 0);
   const std::vector<std::string> command = {"reproduce", run_of(folder).key,
                                             "--store",   store_of(folder),
                                             "--out",     (folder.path() / "again").string()};
-  write_replay(folder, "replay", "0.02");  // the description of the run is the stored one
+  describe("0.02");  // the description of the run is the stored one
   const ProgramResult result = run_here(folder, command);
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
   EXPECT_NE(result.out.find("equal trajectories; ATE 0.007"), std::string::npos) << result.out;

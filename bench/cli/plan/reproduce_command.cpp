@@ -154,7 +154,9 @@ ExternalSystem stored_system(const Store& store, const StoredRun& run) {
   const auto& system = manifest.at("system");
   if (!system.contains("description"))
     throw InputError("run " + run.key, "has no description; it was executed by an older version");
-  const std::vector<std::string> sets = parse_system_name(run.identity.variant).sets;
+  // The name of the system may contain a plus, too.
+  const std::vector<std::string> sets =
+      parse_system_name(run.identity.variant.substr(run.identity.system.size())).sets;
   const fs::path file = fs::path(system.at("folder").get<std::string>()) / "stored.toml";
   ExternalSystem stored = parse_external_system(system.at("description").get<std::string>(), file, sets);
   if (stored.hash != run.identity.config_hash)
