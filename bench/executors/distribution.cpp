@@ -60,19 +60,58 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// Copies a description, and the files that determine its runs as far as they are below its folder; others
-/// belong to the machines.
+/// Whether a text names a path that the folder of the description determines.
+bool depends_on_folder(const ExternalSystem& system, const std::string& text) {
+  const auto has = [&text](const char* name) { return text.find(name) != std::string::npos; };
+  const bool is_own_source = fs::path(system.source.git).is_relative();
+  return has("{here}") || (is_own_source && (has("{source}") || has("{binary}")));
+}
+
+/// The words that lead elsewhere in a copy of a description and its files: to a folder, to a file that is not
+/// copied, or out of the folder of the description.
+std::vector<std::string> misleading_words(const ExternalSystem& system) {
+  std::vector<std::string> words;
+  const auto is_relative = [](const std::string& path) { return !path.starts_with('{') && path[0] != '/'; };
+  for (const std::string& word : system.command) {
+    const bool is_program = &word == &system.command.front() && word.find('/') != std::string::npos;
+    const std::string path = with_folders(system, word);
+    const fs::path file = is_program ? program_of(system, path) : path;
+    const bool is_copied = fs::is_regular_file(file) && !path_below(system, file).empty();
+    if (((is_program && is_relative(word)) || depends_on_folder(system, word)) && !is_copied)
+      words.push_back(word);
+  }
+  for (const std::string& variable : system.environment) {
+    if (depends_on_folder(system, variable)) words.push_back(variable);
+  }
+  if (is_relative(system.working_folder) || depends_on_folder(system, system.working_folder))
+    words.push_back(system.working_folder);
+  if (system.calibration_template.empty()) return words;
+  const fs::path source = fs::path(system.folder) / system.calibration_template;
+  if (path_below(system, source).empty() || depends_on_folder(system, eval::read_text_file(source)))
+    words.push_back(system.calibration_template);
+  return words;
+}
+
+/// Copies a description and the files that determine its runs; files with an absolute path belong to the
+/// machines.
 /// @return its path in the job folder, with its parameter sets
+/// @throws InputError if the copy would be another system
 std::string copy_system(const std::string& name, const fs::path& folder, std::size_t index) {
   const fs::path file = parse_system_name(name).file;
-  if (!fs::exists(file)) return name;  // an embedded one
   const ExternalSystem system = load_external_system(name);
+  const std::vector<std::string> words = misleading_words(system);
+  if (!words.empty())
+    throw InputError(system.path,
+                     "\"" + words.front() +
+                         "\" cannot be copied to another machine: it is, or contains, a folder or a "
+                         "path outside of the folder of the description; use a word that is one "
+                         "file below {here}, or an absolute path that each machine has");
   const fs::path target = std::string(kSystemPrefix) + std::to_string(index);
   std::vector<std::string> files = files_of(system);
   files.push_back(fs::absolute(file).string());
   for (const std::string& source : files) {
-    const fs::path relative = fs::path(source).lexically_relative(system.folder);
-    if (relative.empty() || *relative.begin() == "..") continue;
+    const std::string relative = path_below(system, source);
+    if (relative.empty()) continue;
     fs::create_directories((folder / target / relative).parent_path());
     fs::copy_file(source, folder / target / relative, fs::copy_options::overwrite_existing);
   }
@@ -96,7 +135,7 @@ void remove_store(const fs::path& store) {
 }  // namespace
 
 void write_job(const fs::path& folder, const BenchPlan& plan,
-               const std::vector<std::vector<std::string>>& tasks) {
+               const std::vector<std::vector<std::string>>& tasks, SystemFiles system_files) {
   std::vector<OutputFile> files = {{kPlanFile, plan.text}, {kBuildFile, build_name() + "\n"}};
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     files.push_back({keys_file("", static_cast<int>(i) + 1).string(), {}});
@@ -107,7 +146,15 @@ void write_job(const fs::path& folder, const BenchPlan& plan,
   std::string systems;
   for (std::size_t i = 0; i < plan.systems.size(); ++i) {
     fs::remove_all(folder / (std::string(kSystemPrefix) + std::to_string(i)));
-    systems += copy_system(plan.systems[i], folder, i) + "\n";
+    const std::string& name = plan.systems[i];
+    const fs::path file = parse_system_name(name).file;
+    if (file.extension() != ".toml")
+      systems += name;  // an embedded one
+    else if (system_files == SystemFiles::kShared)
+      systems += fs::absolute(name).string();
+    else
+      systems += copy_system(name, folder, i);
+    systems += "\n";
   }
   files.push_back({kSystemsFile, systems});
   write_files(folder, files);
@@ -258,7 +305,7 @@ PlanReport distribute_plan(const PlanMatrix& matrix, const DistributionOptions& 
     if (!pending.runs.empty()) tasks = divide_runs(pending, options);
   }
   if (!tasks.empty() && !options.stop_requested()) {
-    write_job(folder / "job", matrix.plan, tasks);
+    write_job(folder / "job", matrix.plan, tasks, executor.system_files);
     executor.execute(static_cast<int>(tasks.size()));
     if (!options.stop_requested()) executor.collect();
   }

@@ -5,10 +5,9 @@
 ///
 /// The workers, on this or on other machines, share a job folder. It contains
 ///   plan.toml        the plan
-///   systems          paths of the descriptions of other systems, one per line, in the order of the plan;
-///   optional system-I/        the description of system I = 0, 1, ... of the plan, with its template and the
-///   files of its
-///                    command that are below its folder
+///   systems          names of the other systems, one per line, in the order of the plan; optional
+///   system-I/        copy of the description of system I = 0, 1, ..., with its template and the files of its
+///                    command; optional
 ///   build            of the program that divided the plan
 ///   keys-K           keys of the runs of task K = 1, 2, ..., one per line
 ///   store-K.sqlite   the store of task K, with its files
@@ -29,11 +28,18 @@
 
 namespace stillpoint::bench {
 
+/// Where workers find the descriptions of other systems and the files of their commands.
+enum class SystemFiles {
+  kCopied,  ///< in the job folder
+  kShared,  ///< by the paths of this machine
+};
+
 /// Writes the job of a plan into a folder, instead of an earlier one; existing stores remain.
 /// @param tasks keys of the runs of each task
-/// @throws InputError if the folder cannot be written, or a description cannot be read
+/// @throws InputError if the folder cannot be written, or a description cannot be read or cannot be copied,
+/// because it needs a folder, or a file that is not below its own folder
 void write_job(const std::filesystem::path& folder, const BenchPlan& plan,
-               const std::vector<std::vector<std::string>>& tasks);
+               const std::vector<std::vector<std::string>>& tasks, SystemFiles system_files);
 
 /// The matrix of a plan, restricted to the runs with the given keys. A key contains the checksum of the
 /// sequence, the config and the build, so a machine where one of them differs does not have the run.
@@ -75,6 +81,7 @@ struct Executor {
   /// Executes the tasks 1 to `tasks` of the job folder. Failed tasks are not an error: their runs are
   /// missing.
   std::function<void(int tasks)> execute;
+  SystemFiles system_files = SystemFiles::kCopied;
 };
 
 /// The job folder of a plan: STORE.jobs/KEY, where the key identifies the plan, its store and this machine.

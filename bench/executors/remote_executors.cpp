@@ -312,7 +312,9 @@ class SlurmJobs {
 
 Executor slurm_executor(const PlanMatrix& matrix, const DistributionOptions& options) {
   const auto jobs = std::make_shared<const SlurmJobs>(matrix, options);
-  return {.collect = [jobs] { jobs->collect(); }, .execute = [jobs](int tasks) { jobs->execute(tasks); }};
+  return {.collect = [jobs] { jobs->collect(); },
+          .execute = [jobs](int tasks) { jobs->execute(tasks); },
+          .system_files = SystemFiles::kShared};
 }
 
 }  // namespace stillpoint::bench

@@ -58,17 +58,23 @@ Placeholders placeholder_names(const ExternalSystem& system) {
   return names;
 }
 
+/// As `expanded`; {bin} is not mounted in a container.
+void require_text(const ExternalSystem& system, const std::string& text, const std::string& place) {
+  static_cast<void>(expanded(text, placeholder_names(system), place));
+  if (system.runner != ContainerRunner::kNone && text.find("{bin}") != std::string::npos)
+    throw InputError(place,
+                     "\"{bin}\" is not in the container; name a program of the image, or remove runner");
+}
+
 void require_placeholders(const ExternalSystem& system, const std::vector<Setting>& settings) {
-  const Placeholders names = placeholder_names(system);
   for (const Setting& setting : settings) {
     const std::string place = fmt::format("{}:{}", setting.file, setting.line);
     const bool has_placeholders = setting.key == "command" || setting.key == "environment" ||
                                   setting.key == "working_folder" || setting.key == "calibration_template";
     if (!has_placeholders) continue;
-    if (const auto* text = std::get_if<std::string>(&setting.value))
-      static_cast<void>(expanded(*text, names, place));
+    if (const auto* text = std::get_if<std::string>(&setting.value)) require_text(system, *text, place);
     if (const auto* texts = std::get_if<std::vector<std::string>>(&setting.value)) {
-      for (const std::string& text : *texts) static_cast<void>(expanded(text, names, place));
+      for (const std::string& text : *texts) require_text(system, text, place);
     }
   }
 }
@@ -89,8 +95,14 @@ void require_image(const ExternalSystem& system) {
                                       "\"apptainer\"");
 }
 
-void require_source(const SystemSource& source, const Setting& setting) {
+void require_source(const ExternalSystem& system, const Setting& setting) {
   if (!setting.key.starts_with("source.")) return;
+  const SystemSource& source = system.source;
+  if (system.runner != ContainerRunner::kNone)
+    throw InputError(
+        setting.file, setting.line,
+        "[source] is built outside of the container, which runs the program of its image; remove "
+        "[source] or runner");
   if (source.binary.empty())
     throw InputError(setting.file, setting.line,
                      "[source] has no binary; add binary = \"PATH\" of the program below the work tree");
@@ -127,7 +139,8 @@ void apply_sets(ExternalSystem& system, const std::vector<Setting>& settings,
   }
   for (const std::string& set : sets) {
     if (std::ranges::find(known, set) == known.end())
-      throw InputError(system.path, "has no table [variant." + set + "]" + suggestion(set, known));
+      throw InputError(system.path,
+                       "has no table [variant." + set + "] with a parameter" + suggestion(set, known));
     const std::string prefix = std::string(kVariantPrefix) + set + ".";
     for (const Setting& setting : settings) {
       if (setting.key.starts_with(prefix)) system.param[setting.key.substr(prefix.size())] = text_of(setting);
@@ -149,10 +162,18 @@ std::vector<std::string> files_of(const ExternalSystem& system) {
   for (const std::string& word : system.command) {
     const bool is_program = &word == &system.command.front();
     const std::string path = with_folders(system, word);
-    if (is_program && path.find('/') != std::string::npos) add_file(program_of(system, path));
+    const std::string program = program_of(system, path);
+    const bool is_in_image = system.runner != ContainerRunner::kNone && path_below(system, program).empty();
+    if (is_program && path.find('/') != std::string::npos && !is_in_image) add_file(program);
     if (!is_program && path != word) add_file(path);
   }
   return files;
+}
+
+std::string path_below(const ExternalSystem& system, const std::string& file) {
+  const fs::path folder = fs::path(system.folder).lexically_normal();
+  const fs::path relative = fs::path(file).lexically_normal().lexically_relative(folder);
+  return relative.empty() || *relative.begin() == ".." ? "" : relative.string();
 }
 
 SystemName parse_system_name(std::string name) {
@@ -224,7 +245,7 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
   require_placeholders(system, own_settings);
   for (const Setting& setting : own_settings) {
     if (setting.key == "environment") require_environment(setting, system);
-    require_source(system.source, setting);
+    require_source(system, setting);
     const bool is_template = setting.key == "calibration_template";
     const fs::path file = fs::absolute(path).parent_path() / system.calibration_template;
     if (is_template && !fs::is_regular_file(file))

@@ -108,7 +108,7 @@ struct ExternalSystem {
   PositionScale scale = PositionScale::kMetric;
   std::string timings;  ///< in {out}: JSON with modules and threads as "timings" in result.json; may be empty
   /// The program is executed in a container without network, in which {sequence} and {here} are read-only and
-  /// {out} is writable, at the same paths.
+  /// {out} is writable, at the same paths. {bin} and [source] are errors.
   ContainerRunner runner = ContainerRunner::kNone;
   std::string image;                         ///< of the container, e.g. "localhost/my_slam:1"
   std::vector<std::string> runner_options;   ///< further options of the runner, before the image
@@ -173,8 +173,12 @@ struct SystemName {
                                                    const std::vector<std::string>& sets = {});
 
 /// The files that determine a run beside the description: its template, its program, and files of the command
-/// with {here}, {bin} or {source}. Those that do not exist are left out.
+/// with {here}, {bin} or {source}. Those that do not exist, and the program of an image, are left out.
 [[nodiscard]] std::vector<std::string> files_of(const ExternalSystem& system);
+
+/// The path of a file relative to the folder of the description; empty if it is not below that folder.
+/// @param file absolute
+[[nodiscard]] std::string path_below(const ExternalSystem& system, const std::string& file);
 
 /// A commented description with all keys, to be edited; valid as it is.
 /// @param name of the system

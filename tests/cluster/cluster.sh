@@ -57,7 +57,7 @@ fail() { echo "error: $*"; exit 1; }
 export STILLPOINT_REGISTRY="$work/registry.json" STILLPOINT_CACHE="$work/cache" STILLPOINT_DATA="$work/data"
 mkdir -p "$work/data"
 
-# The description of another system, which the workers get with the job.
+# The description of another system, which the workers of ssh get with the job.
 mkdir -p "$work/systems"
 printf '!/^#/ { print $1, 0, 0, 0, 0, 0, 0, 1 > "toy.tum" }\n' >"$work/systems/toy.awk"
 printf 'name = "toy"\ncommand = ["awk", "-f", "{here}/toy.awk", "{sequence}/rgb.txt"]\ntrajectory = "toy.tum"\n' \
@@ -87,7 +87,7 @@ expect_equal() {
   "$program" store verify --store "$work/$2.sqlite" >/dev/null || fail "the store $2 is damaged"
 }
 
-# check_systems OPTIONS...: runs of another system, whose description and script the workers get with the job
+# check_systems OPTIONS...: runs of another system, whose description and script the workers of ssh get with the job
 check_systems() {
   write_plan systems 2
   sed -i "s|^variants.*|systems = [\"$work/systems/toy.toml\"]|" "$work/systems.toml"

@@ -34,8 +34,8 @@ TEST(JobFolder, ATaskHasTheRunsOfItsKeys) {
   const BenchPlan plan = plan_in(folder);
   const std::vector<std::string> keys = keys_of(plan);
   const fs::path job = folder.path() / "job";
-  write_job(job, plan, {{keys[0]}, {keys[1]}, {}});
-  write_job(job, plan, {{keys[1]}, {keys[0]}});
+  write_job(job, plan, {{keys[0]}, {keys[1]}, {}}, SystemFiles::kCopied);
+  write_job(job, plan, {{keys[1]}, {keys[0]}}, SystemFiles::kCopied);
   const PlanMatrix matrix = job_matrix(job, task_keys(job, 1));
   ASSERT_EQ(matrix.runs.size(), 1u);
   EXPECT_EQ(run_key(matrix.runs[0].identity), keys[1]);
@@ -46,7 +46,7 @@ TEST(JobFolder, ATaskHasTheRunsOfItsKeys) {
 TEST(JobFolder, ARunThatThisMachineDoesNotHaveIsAnError) {
   const TemporaryFolder folder;
   const fs::path job = folder.path() / "job";
-  write_job(job, plan_in(folder), {{"0123456789abcdef"}});
+  write_job(job, plan_in(folder), {{"0123456789abcdef"}}, SystemFiles::kCopied);
   expect_input_error([&] { static_cast<void>(job_matrix(job, task_keys(job, 1))); },
                      {"1 runs, e.g. 0123456789abcdef"});
   std::ofstream(job / "build") << "another\n";
@@ -66,7 +66,7 @@ TEST(JobFolder, DescriptionsTravelWithTheFilesOfTheirCommand) {
                                  "+few\", \"orb_pnp\"]\n[rendered]\nsequences = [\"walking_static\"]\n"));
   const std::vector<std::string> keys = keys_of(plan);
   const fs::path job = folder.path() / "job";
-  write_job(job, plan, {keys});
+  write_job(job, plan, {keys}, SystemFiles::kCopied);
   fs::rename(job, folder.path() / "elsewhere");
   fs::remove_all(folder.path() / "sys");
   const PlanMatrix matrix = job_matrix(folder.path() / "elsewhere", keys);
@@ -77,6 +77,29 @@ TEST(JobFolder, DescriptionsTravelWithTheFilesOfTheirCommand) {
   std::ofstream(fs::path(matrix.systems[0].folder) / "tools/run.sh") << "exit 1\n";
   expect_input_error([&] { static_cast<void>(job_matrix(folder.path() / "elsewhere", keys)); },
                      {"system files differ"});
+}
+
+// Copies of these would be other systems with the same key.
+TEST(JobFolder, DescriptionsThatNeedMoreThanTheirFilesAreUsedWhereTheyAre) {
+  const TemporaryFolder folder;
+  folder.write("sys/cfg/a.yaml", "a: 1\n");
+  folder.write("prog/run.sh", "exit 0\n");
+  for (const std::string keys :
+       {"command = [\"sh\", \"{here}/cfg\"]", "command = [\"sh\", \"--config={here}/cfg/a.yaml\"]",
+        "command = [\"sh\", \"{here}/../prog/run.sh\"]", "command = [\"../prog/run.sh\"]",
+        "command = [\"sh\", \"{here}/cfg/../../prog/run.sh\"]", "command = [\"sh\"]\nworking_folder = \".\"",
+        "command = [\"sh\"]\nenvironment = [\"LD_LIBRARY_PATH={here}/lib\"]",
+        "command = [\"sh\"]\ncalibration_template = \"../prog/run.sh\"",
+        "command = [\"{binary}\"]\n[source]\ngit = \"..\"\nbinary = \"prog/run.sh\""}) {
+    const fs::path file = folder.write("sys/slam.toml", "name = \"slam\"\n" + keys + "\n");
+    const BenchPlan plan = load_plan(folder.write(
+        "p.toml", "systems = [\"" + file.string() + "\"]\n[rendered]\nsequences = [\"walking_static\"]\n"));
+    const fs::path job = folder.path() / "job";
+    expect_input_error([&] { write_job(job, plan, {keys_of(plan)}, SystemFiles::kCopied); },
+                       {"slam.toml: ", "cannot be copied to another machine", "absolute path"});
+    write_job(job, plan, {keys_of(plan)}, SystemFiles::kShared);
+    EXPECT_EQ(job_matrix(job, keys_of(plan)).systems.at(0).path, file) << keys;
+  }
 }
 
 TEST(JobFolder, MergingIsIdempotentAndCompletesAnInterruptedMerge) {

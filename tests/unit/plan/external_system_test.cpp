@@ -67,6 +67,10 @@ TEST(ExternalDescription, ParameterSetsAreVariants) {
   EXPECT_NE(both.hash, plain.hash);
   expect_input_error([&] { static_cast<void>(load_external_system(file + "+fwe")); },
                      {"a+b.toml: has no table [variant.fwe]", "\"few\"?"});
+  const std::string empty =
+      folder.write("e.toml", "name = \"s\"\ncommand = [\"s\"]\n[variant.few]\n").string();
+  expect_input_error([&] { static_cast<void>(load_external_system(empty + "+few")); },
+                     {"has no table [variant.few] with a parameter"});
   const std::string begin = "name = \"s\"\ncommand = [\"s\"]\n[param]\nn = 1\n";
   expect_bad_description(begin + "[variant.few]\nk = 1", {"s.toml:6: ", "\"variant.few.k\"", "[param]"});
   expect_bad_description(begin + "[variant]\nn = 1", {"s.toml:6: ", "\"variant.n\"", "[variant.SET]"});
@@ -86,6 +90,17 @@ TEST(ExternalDescription, HashContainsTheFilesOfTheCommand) {
   EXPECT_EQ(load_external_system(file).hash, before);
   folder.write("run.sh", "exit 1\n");
   EXPECT_NE(load_external_system(file).hash, before);
+  // The program of a container is that of its image.
+  const std::string program = folder.write("bin/slam", "1").string();
+  const std::string contained = folder
+                                    .write("sys/s.toml",
+                                           "name = \"s\"\nrunner = \"podman\"\nimage = "
+                                           "\"s:1\"\ncommand = [\"" +
+                                               program + "\"]\n")
+                                    .string();
+  const std::string of_image = load_external_system(contained).hash;
+  folder.write("bin/slam", "2");
+  EXPECT_EQ(load_external_system(contained).hash, of_image);
 }
 
 TEST(ExternalDescription, FindsItsProgramBesideItAndInPath) {
@@ -178,6 +193,10 @@ TEST(ExternalRun, StartsItsProgramInAContainer) {
                                                       "--pids-limit=9", "s:1", "/slam", here + "/office"}));
   expect_bad_description("name = \"s\"\ncommand = [\"s\"]\nrunner = \"docker\"", {"s.toml: ", "no image"});
   expect_bad_description("name = \"s\"\ncommand = [\"s\"]\nimage = \"a\"", {"s.toml: ", "no runner"});
+  const std::string contained = "name = \"s\"\nrunner = \"podman\"\nimage = \"a\"\n";
+  expect_bad_description(contained + "command = [\"{bin}/s\"]", {"s.toml:4: ", "{bin}", "image"});
+  expect_bad_description(contained + "command = [\"s\"]\n[source]\nbinary = \"s\"",
+                         {"s.toml:6: ", "[source]", "image"});
 }
 
 TEST(ExternalOutput, MatricesHaveTheStampsOfTheFrames) {
