@@ -287,11 +287,12 @@ std::string trajectory_text(const RunResult& result) {
 
 namespace {
 
-/// Removes what only an earlier run wrote. Its images are removed before this run may write its own.
+/// Removes files that only an earlier run wrote. Its images are removed before this run may write its own.
 void remove_other_outputs(const std::filesystem::path& folder, const std::vector<OutputFile>& written) {
   for (const std::string& name : run_layout().names) {
     std::error_code ignored;
-    if (name != "images" && std::ranges::find(written, name, &OutputFile::name) == written.end())
+    if (std::filesystem::is_regular_file(folder / name, ignored) &&
+        std::ranges::find(written, name, &OutputFile::name) == written.end())
       std::filesystem::remove(folder / name, ignored);
   }
 }
