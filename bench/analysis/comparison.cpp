@@ -183,7 +183,8 @@ ChangeClass Comparison::result() const {
   if (pairs > 0 && base_failed == pairs && head_failed == pairs) return ChangeClass::kError;
   ChangeClass worst = failures;
   for (const MissingResult& result : missing) {
-    if (!missing_allowed) worst = std::max(worst, result.result);
+    // Without any pair, base and head may be the first builds of different plans.
+    if (!missing_allowed && pairs > 0) worst = std::max(worst, result.result);
   }
   if (!has_result() || !unlike.empty()) worst = std::max(worst, ChangeClass::kInconclusive);
   for (const MetricChange& change : changes) {
