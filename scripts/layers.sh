@@ -79,10 +79,10 @@ row datasets/synthetic/motion $messages $trajectories datasets/io datasets/synth
 row datasets/synthetic/render core/base core/geometry datasets/synthetic datasets/synthetic/materials
 scene="core/base core/geometry datasets/synthetic datasets/synthetic/materials datasets/synthetic/motion
   datasets/synthetic/render"
-row datasets/synthetic/scenes $scene
+row datasets/synthetic/scenes $scene datasets/io
 row datasets/synthetic/actors $scene datasets/io datasets/synthetic/scenes
 row datasets/synthetic/sensors $scene core/types datasets/synthetic/actors
-row datasets/synthetic/sequence $scene core/types $trajectories datasets/cache datasets/io datasets/synthetic/scenes datasets/synthetic/actors \
+row datasets/synthetic/sequence $scene core/types $trajectories datasets/calibration datasets/cache datasets/io datasets/synthetic/scenes datasets/synthetic/actors \
   datasets/synthetic/sensors
 row datasets/catalogue core/base
 row datasets/download core/base
@@ -160,6 +160,7 @@ libraries=(
   '<(bzlib|lz4)       ^datasets/bags/bag_chunks\.cpp$'
   '<turbojpeg        ^datasets/io/image_io\.cpp$'
   '<embree[34]/        ^datasets/synthetic/render/embree\.h$'
+  '<assimp/           ^datasets/synthetic/scenes/mesh_file\.cpp$'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|reference)/|^core/(loop|calibration)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'

@@ -27,7 +27,7 @@ packages=(
   "${minimal[@]}"
   make ccache mold
   openimageio-tools libbz2-dev liblz4-dev
-  libembree-dev libtbb-dev
+  libembree-dev libtbb-dev libassimp-dev
   libsqlite3-dev libzstd-dev libmicrohttpd-dev libpango1.0-dev fonts-liberation
   libcurl4-openssl-dev libarchive-dev libssl-dev
   libgtest-dev libbenchmark-dev

@@ -74,6 +74,9 @@ void bind_request(py::module_& m) {
       .field("imu_file", &SynthRequest::imu_file, "Inertial samples of the preset flight.")
       .field("track_sequence", &SynthRequest::track_sequence, "Number of the sequence of the preset track.")
       .field("times_file", &SynthRequest::times_file, "Recorded frame times; empty: equal intervals.")
+      .field("mesh_file", &SynthRequest::mesh_file, "Scene of the preset mesh: PLY or OBJ.")
+      .field("rig_file", &SynthRequest::rig_file,
+             "Intrinsics and pose of the camera; empty: RealSense D435i.")
       .choice("layout", &SynthRequest::layout, "Of the files: openloris or tum.");
   options.type().def_property_readonly(
       "key", &synth::request_key,

@@ -108,5 +108,19 @@ TEST(EvalCommand, ReportsTheLineOfAMalformedFile) {
   EXPECT_TRUE(result.err.starts_with("stillpoint: error: " + file + ":2: ")) << result.err;
 }
 
+TEST(SynthCommand, ExplainsWhatDoesNotFitToAMeshOrARig) {
+  const auto expect = [](std::vector<std::string> options, const std::vector<std::string>& parts) {
+    options.insert(options.begin(), {"data", "synth"});
+    const ProgramResult result = run_program(options);
+    EXPECT_EQ(result.exit_code, 2);
+    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  };
+  expect({"--mesh", "scan.ply"}, {"preset \"mesh\"", "--trajectory"});
+  expect({"office_laps", "--mesh", "scan.ply"}, {"office_laps", "--mesh"});
+  expect({"--mesh", "none.ply", "--trajectory", "none.txt"}, {"none.txt"});
+  expect({"market", "--rig", "none.toml"}, {"none.toml", "no such rig file"});
+  expect({"market", "--rig", "none.toml", "--width", "320"}, {"--rig", "--width"});
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "datasets/synthetic/sequence/presets.h"
+#include "datasets/synthetic/sequence/request_rig.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -60,7 +60,7 @@ refused "reads none" run "$(mktemp -p "$scratch" XXXX.bag)"
 refused "reads none" eval "$(mktemp -p "$scratch" XXXX.mcap):/odom" "$scratch/run/trajectory.tum"
 refused "writes none" eval "$sequence/groundtruth.txt" "$scratch/run/trajectory.tum" --plot "$scratch/plot.pdf"
 
-absent='embree|curl|microhttpd|archive|cairo|sqlite|libcrypto|bz2'
+absent='assimp|embree|curl|microhttpd|archive|cairo|sqlite|libcrypto|bz2'
 ldd "$program" >"$scratch/output" || fail "ldd"
 if grep -E "$absent" "$scratch/output"; then fail "the program opens the libraries above"; fi
 # Debian's OpenCV opens TBB; the program itself does not.

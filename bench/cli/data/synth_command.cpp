@@ -12,6 +12,7 @@
 #include "bench/cli/console.h"
 #include "core/base/error.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
+#include "datasets/synthetic/sequence/request_rig.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -19,7 +20,8 @@ namespace {
 constexpr const char* kPresets =
     "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; fr3, "
     "fr3_{walking_{xyz,static,rpy,halfsphere},sitting_static}; track; flight"
-    " (all recorded motion); with returns to places: {office,corridor,market}_laps, twin_aisles, "
+    " (all recorded motion); mesh (a scan, the default with --mesh); with returns to places: "
+    "{office,corridor,market}_laps, twin_aisles, "
     "changed_room, "
     "each also with _short; home_tour";
 constexpr double kPresetValue = -1.0;  // option not given: use the value of the preset
@@ -29,7 +31,7 @@ struct SynthArguments {
   std::string preset;
   std::string out;
   std::string layout = "openloris";
-  std::string trajectory, imu, times;
+  std::string trajectory, imu, times, mesh, rig;
   int track_sequence = 0;
   bool labels = false;
   int seed = 1;
@@ -47,15 +49,31 @@ void override_with(Value& value, Given given, double factor = 1.0) {
   if (given >= 0) value = static_cast<Value>(given * factor);
 }
 
+std::string preset_of(const SynthArguments& arguments) {
+  if (arguments.preset.empty() && arguments.mesh.empty())
+    throw InputError("command line",
+                     "PRESET is missing; give one, or a scene: --mesh FILE --trajectory FILE");
+  return arguments.preset.empty() ? "mesh" : arguments.preset;
+}
+
+void use_rig_file(const SynthArguments& arguments, synth::SynthRequest& request) {
+  if (arguments.width >= 0 || arguments.height >= 0 || arguments.focal >= 0)
+    throw InputError("--rig", "states the camera; remove --width, --height and --focal, or --rig");
+  synth::use_rig(request, arguments.rig);
+}
+
 synth::SynthRequest request_of(const SynthArguments& arguments) {
-  synth::SynthRequest request = synth::preset_request(arguments.preset);
+  synth::SynthRequest request = synth::preset_request(preset_of(arguments));
   request.layout = enum_of<synth::SequenceLayout>("--layout", arguments.layout);
   request.labels = arguments.labels;
   if (!arguments.trajectory.empty()) request.trajectory_file = arguments.trajectory;
   request.imu_file = arguments.imu;
   if (!arguments.times.empty()) request.times_file = arguments.times;
   request.track_sequence = arguments.track_sequence;
-  request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
+  request.mesh_file = arguments.mesh;
+  if (!arguments.rig.empty()) use_rig_file(arguments, request);
+  if (arguments.time_offset_ms != 0.0 || arguments.rig.empty())
+    request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
   override_with(request.seed, arguments.seed);
   override_with(request.seconds, arguments.seconds);
   override_with(request.start_s, arguments.start);
@@ -140,7 +158,7 @@ std::vector<Option> sensor_options_of(SynthArguments& arguments) {
 
 std::vector<Option> options_of(SynthArguments& arguments) {
   std::vector<Option> options = {
-      {"PRESET", kPresets, &arguments.preset},
+      {.name = "PRESET", .help = kPresets, .target = &arguments.preset, .may_be_omitted = true},
       {"--out", "Output folder [a folder in the cache]", &arguments.out},
       {"--seed", "Random seed; the output is a function of seed and options", &arguments.seed, {0, 1e9}},
       {"--seconds", "Duration [s]", &arguments.seconds, {0.01, 36000}},
@@ -150,7 +168,7 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--layout", "Output layout: " + enum_list<synth::SequenceLayout>(), &arguments.layout},
       {"--labels", "Also write instance masks", &arguments.labels},
       {"--trajectory",
-       "Preset flight: IMU poses (TUM text); fr3: camera poses; home_tour, track: gt_SCENE_1.txt of "
+       "Preset flight: IMU poses (TUM text); fr3, mesh: camera poses; home_tour, track: gt_SCENE_1.txt of "
        "OpenLORIS",
        &arguments.trajectory},
       {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
@@ -158,10 +176,14 @@ std::vector<Option> options_of(SynthArguments& arguments) {
        "Preset track: number of the sequence in the file",
        &arguments.track_sequence,
        {0, 1000}},
+      {"--mesh", "Scanned scene (PLY or OBJ with colors, meters, z up) instead of that of a preset",
+       &arguments.mesh},
+      {"--rig", "Calibration and noise of the rendered sensors: rig.toml, or YAML of other programs",
+       &arguments.rig},
       {"--times", "Recorded frame times, one per line [s]; a third field is the time of the depth image",
        &arguments.times},
       {"--start",
-       "Preset flight, fr3, track or home_tour: offset of the first frame [s]",
+       "Preset flight, fr3, mesh, track or home_tour: offset of the first frame [s]",
        &arguments.start,
        {0, 1e6}}};
   std::ranges::move(sensor_options_of(arguments), std::back_inserter(options));

@@ -10,10 +10,6 @@
 namespace stillpoint::synth {
 namespace {
 
-std::uint32_t pack(const cv::Vec3b& rgb) {
-  return static_cast<std::uint32_t>(rgb[0] | rgb[1] << 8 | rgb[2] << 16);
-}
-
 cv::Vec3b average(const cv::Mat& rgb, int row, int column) {
   cv::Vec3i sum(2, 2, 2);  // rounds to nearest
   for (int dy = 0; dy < 2; ++dy) {
@@ -45,7 +41,7 @@ Texture::Texture(const cv::Mat& rgb) {
     levels_.push_back({level.cols, level.rows, texels_.size()});
     for (int row = 0; row < level.rows; ++row) {
       for (int column = 0; column < level.cols; ++column)
-        texels_.push_back(pack(level.at<cv::Vec3b>(row, column)));
+        texels_.push_back(packed(level.at<cv::Vec3b>(row, column)));
     }
     if (level.cols == 1 && level.rows == 1) break;
   }

@@ -35,6 +35,11 @@ class Texture {
     [[nodiscard]] Float4 value() const;
   };
 
+  /// A color as it is stored.
+  [[nodiscard]] static std::uint32_t packed(const cv::Vec3b& rgb) {
+    return static_cast<std::uint32_t>(rgb[0] | rgb[1] << 8 | rgb[2] << 16);
+  }
+
   /// The texels at (s, t), in repeats of the texture, in mip level floor(`level`), clamped.
   [[nodiscard]] Cell cell_at(float s, float t, float level) const;
 

@@ -40,6 +40,22 @@ struct View {
 
 View view_of(const Pose& T_w_c) { return {T_w_c.R().cast<float>(), T_w_c.p.cast<float>()}; }
 
+Eigen::Vector3f normal_of(const StaticMesh& mesh, const MeshTriangle& triangle) {
+  const Eigen::Vector3f& corner = mesh.vertices[triangle.corners[0]];
+  const Eigen::Vector3f first = mesh.vertices[triangle.corners[1]] - corner;
+  return first.cross(mesh.vertices[triangle.corners[2]] - corner).normalized();
+}
+
+/// The texels whose bilinear interpolation is that of the corners' colors, see MeshTriangle::colors.
+Texture::Cell corner_colors(const MeshTriangle& triangle, float u, float v) {
+  return {.upper = triangle.colors.data(),
+          .lower = triangle.colors.data() + 2,
+          .column = 0,
+          .next_column = 1,
+          .weight_x = u / std::max(1.0F - v, 1e-6F),
+          .weight_y = v};
+}
+
 /// Displacement of the triangle's centroid over the motion interval [m].
 float displacement_m(const MovingMesh& mesh, std::size_t triangle) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
@@ -156,6 +172,15 @@ inline FrameRenderer::SurfacePoint FrameRenderer::surface_at(const Job& job, con
         approximate_log2(pixel_m * texels_per_m) - 0.5F * approximate_log2(cosine) + kLevelBias;
     return std::max(0.0F, level + kLevelDither[static_cast<std::size_t>(sample)]);
   };
+  if (!packet.moving[lane] && primitive >= world_.quads.size()) {
+    const MeshTriangle& triangle = world_.mesh.triangles[primitive - world_.quads.size()];
+    if (triangle.texture < 0) return {corner_colors(triangle, u, v), 1.0F};
+    const float w = 1.0F - u - v;
+    const Eigen::Vector2f st = w * triangle.uv[0] + u * triangle.uv[1] + v * triangle.uv[2];
+    return {world_.textures[static_cast<std::size_t>(triangle.texture)].cell_at(
+                st.x(), st.y(), level_of(triangle.texels_per_m, normal_of(world_.mesh, triangle))),
+            1.0F};
+  }
   if (!packet.moving[lane]) {
     const Quad& quad = world_.quads[primitive];
     return {

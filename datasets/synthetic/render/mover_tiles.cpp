@@ -31,7 +31,7 @@ struct Bounds {
 
   void add(const Eigen::Vector3f& p_c, const Camera& camera) {
     ahead = ahead || p_c.z() > 0.0F;
-    beyond &= sides_beyond(p_c, camera);
+    beyond &= camera.has_distortion() ? 0U : sides_beyond(p_c, camera);  // a bent image has no such planes
     if (p_c.z() < kNearest_m) {
       near = true;
       return;

@@ -2,6 +2,7 @@
 #include "datasets/synthetic/render/ray_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "core/base/error.h"
@@ -16,16 +17,19 @@ struct Vertex {
 
 Vertex vertex(const Eigen::Vector3f& point) { return {point.x(), point.y(), point.z()}; }
 
-/// A committed scene of one geometry; takes ownership of `geometry`.
-RTCScene scene_of(RTCDevice device, RTCGeometry geometry, RTCBuildQuality quality) {
-  rtcSetGeometryBuildQuality(geometry, quality);
-  rtcCommitGeometry(geometry);
+/// A scene with one quality of all its acceleration structures; to be committed.
+RTCScene new_scene(RTCDevice device, RTCBuildQuality quality) {
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneBuildQuality(scene, quality);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
   return scene;
+}
+
+/// Takes ownership of `geometry`. @param number RTCHit::geomID of its hits
+void attach(RTCScene scene, RTCGeometry geometry, unsigned number, RTCBuildQuality quality) {
+  rtcSetGeometryBuildQuality(geometry, quality);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, number);
+  rtcReleaseGeometry(geometry);
 }
 
 struct BufferKind {
@@ -74,8 +78,35 @@ RTCGeometry triangles_of(RTCDevice device, const MovingMesh& mesh) {
   return geometry;
 }
 
-/// Traces the active lanes; lanes with a closer hit get its data, and `moving` in RayPacket::moving.
-void trace_scene(RTCScene scene, RayPacket& packet, bool moving) {
+RTCGeometry triangles_of(RTCDevice device, const StaticMesh& mesh) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* corners =
+      new_buffer<Vertex>(geometry, {RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3}, mesh.vertices.size());
+  std::ranges::transform(mesh.vertices, corners, vertex);
+  auto* indices = new_buffer<std::array<std::uint32_t, 3>>(
+      geometry, {RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3}, mesh.triangles.size());
+  std::ranges::transform(mesh.triangles, indices, &MeshTriangle::corners);
+  return geometry;
+}
+
+/// The quads are geometry 0, the mesh is geometry 1.
+RTCScene world_scene(RTCDevice device, const World& world) {
+  constexpr RTCBuildQuality kQuality = RTC_BUILD_QUALITY_MEDIUM;
+  RTCScene scene = new_scene(device, kQuality);
+  if (!world.quads.empty()) attach(scene, quads_of(device, world), 0, kQuality);
+  if (!world.mesh.triangles.empty()) attach(scene, triangles_of(device, world.mesh), 1, kQuality);
+  rtcCommitScene(scene);
+  return scene;
+}
+
+/// What a scene contains, for the numbers of its hits.
+struct SceneContent {
+  bool moving = false;          ///< for RayPacket::moving
+  std::int32_t quad_count = 0;  ///< added to the numbers of hits in a second geometry
+};
+
+/// Traces the active lanes; lanes with a closer hit get its data.
+void trace_scene(RTCScene scene, RayPacket& packet, const SceneContent& content) {
   alignas(32) RTCRayHit8 hits;
   alignas(32) int valid[kPacket];
   std::copy_n(packet.origin_x, kPacket, hits.ray.org_x);
@@ -100,8 +131,9 @@ void trace_scene(RTCScene scene, RayPacket& packet, bool moving) {
     packet.far[lane] = hits.ray.tfar[lane];
     packet.u[lane] = hits.hit.u[lane];
     packet.v[lane] = hits.hit.v[lane];
-    packet.primitive[lane] = static_cast<std::int32_t>(hits.hit.primID[lane]);
-    packet.moving[lane] = moving;
+    packet.primitive[lane] = static_cast<std::int32_t>(hits.hit.primID[lane]) +
+                             (hits.hit.geomID[lane] == 0 ? 0 : content.quad_count);
+    packet.moving[lane] = content.moving;
   }
 }
 
@@ -110,6 +142,7 @@ void trace_scene(RTCScene scene, RayPacket& packet, bool moving) {
 struct RayTracer::Scene {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  SceneContent content;
   ~Scene() {
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
@@ -125,13 +158,14 @@ RayTracer::RayTracer(const World& world) : scene_(std::make_unique<Scene>()) {
   scene_->device = rtcNewDevice("threads=1");
   if (scene_->device == nullptr)
     throw std::runtime_error("cannot create an Embree device; check the Embree installation");
-  scene_->scene = scene_of(scene_->device, quads_of(scene_->device, world), RTC_BUILD_QUALITY_MEDIUM);
+  scene_->scene = world_scene(scene_->device, world);
+  scene_->content.quad_count = static_cast<std::int32_t>(world.quads.size());
 }
 
 RayTracer::~RayTracer() = default;
 RayTracer::RayTracer(RayTracer&&) noexcept = default;
 
-void RayTracer::trace(RayPacket& packet) const { trace_scene(scene_->scene, packet, false); }
+void RayTracer::trace(RayPacket& packet) const { trace_scene(scene_->scene, packet, scene_->content); }
 
 bool RayTracer::is_unoccluded(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
   RTCRay ray{};
@@ -148,12 +182,16 @@ RayTracer::Movers::Movers(const RayTracer& tracer, const MovingMesh& mesh)
     : scene_(std::make_unique<Scene>()) {
   STILLPOINT_CHECK(mesh.start.size() == mesh.end.size());
   RTCDevice device = tracer.scene_->device;
-  scene_->scene = scene_of(device, triangles_of(device, mesh), RTC_BUILD_QUALITY_LOW);
+  scene_->scene = new_scene(device, RTC_BUILD_QUALITY_LOW);
+  attach(scene_->scene, triangles_of(device, mesh), 0, RTC_BUILD_QUALITY_LOW);
+  rtcCommitScene(scene_->scene);
 }
 
 RayTracer::Movers::~Movers() = default;
 RayTracer::Movers::Movers(Movers&&) noexcept = default;
 
-void RayTracer::Movers::trace(RayPacket& packet) const { trace_scene(scene_->scene, packet, true); }
+void RayTracer::Movers::trace(RayPacket& packet) const {
+  trace_scene(scene_->scene, packet, {.moving = true});
+}
 
 }  // namespace stillpoint::synth

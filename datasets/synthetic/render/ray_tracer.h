@@ -22,7 +22,8 @@ struct RayPacket {
   alignas(32) float far[kPacket];   ///< in: maximum distance; out: distance to the hit; in units of the
                                     ///< direction's length
   alignas(32) float u[kPacket], v[kPacket];
-  alignas(32) std::int32_t primitive[kPacket];  ///< -1: no hit
+  alignas(32) std::int32_t primitive[kPacket];  ///< -1: no hit; in the world, triangles of its mesh follow
+                                                ///< the quads
   bool moving[kPacket];  ///< the primitive belongs to the moving mesh, not to the world
 };
 

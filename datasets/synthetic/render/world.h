@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Static geometry of a synthetic scene: textured parallelograms and lamps.
+/// Static geometry of a synthetic scene: textured parallelograms, a mesh, and lamps.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/geometry/pose.h"
@@ -39,10 +40,29 @@ struct Lamp {
   float power = 1.0F;                  ///< irradiance (relative) at 1 m straight below
 };
 
+/// What a triangle of a mesh shows: its part of a texture, or the colors of its corners.
+struct MeshTriangle {
+  std::array<std::uint32_t, 3> corners{};  ///< in StaticMesh::vertices
+  int texture = -1;                        ///< in World::textures; -1: the colors of the corners
+  std::array<Eigen::Vector2f, 3> uv;       ///< texture coordinates of the corners
+  float texels_per_m = 1.0F;
+  /// Texels of the corners, the last one twice: bilinear interpolation in this 2 x 2 image at
+  /// (u / (1 - v), v) is that of the triangle, (1 - u - v) c_0 + u c_1 + v c_2.
+  std::array<std::uint32_t, 4> colors{};
+};
+
+/// A scanned surface. Its colors contain the light of the scan: it is shown without lamps and shadows, and
+/// from both sides.
+struct StaticMesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<MeshTriangle> triangles;
+};
+
 /// The static part of a scene.
 struct World {
   std::vector<Texture> textures;
   std::vector<Quad> quads;
+  StaticMesh mesh;
   std::vector<Lamp> lamps;
   std::vector<float> light;  ///< irradiance at the lightmap nodes of all quads, see lightmap.h
   float ambient = 0.25F;     ///< ambient irradiance before occlusion

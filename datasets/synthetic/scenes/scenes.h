@@ -28,6 +28,7 @@ struct Scene {
   std::vector<std::vector<Eigen::Vector2d>> walking_routes;  ///< closed polygons for people
   std::vector<std::vector<Eigen::Vector2d>> cart_routes;     ///< closed polygons for carts and chairs
   std::vector<Placement> seats;                              ///< free chairs
+  double floor_m = 0.0;  ///< height on which people and other moving objects move
   Palette palette;
   double gain = 1.0;  ///< from scene radiance to sensor signal (1 = saturation)
   std::optional<SceneChange> change;

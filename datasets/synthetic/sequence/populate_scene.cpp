@@ -21,10 +21,19 @@ Walk make_walk(const std::vector<Eigen::Vector2d>& corners, WalkStyle style, con
   return {route, style, camera, mix_bits(key)};
 }
 
+/// Moves an actor from z = 0 to the floor.
+void lift(Actor& actor, double floor_m) {
+  actor.poses_at = [poses_at = std::move(actor.poses_at), floor_m](double t_s) {
+    std::vector<Pose> poses = poses_at(t_s);
+    for (Pose& pose : poses) pose.p.z() += floor_m;
+    return poses;
+  };
+}
+
 void require_positions(int requested, std::size_t available, const std::string& what,
                        const std::string& option) {
   if (requested > 0 && available == 0) {
-    throw InputError("synth: " + what, "this scene supports none; use " + option + " 0");
+    throw InputError("synth: " + what, "this scene has no space for any; use " + option + " 0");
   }
 }
 
@@ -39,7 +48,7 @@ std::vector<Actor> populate_scene(const SynthRequest& request, Scene& scene, con
                      "the scene has " + std::to_string(scene.seats.size()) + " free chairs; use --seated");
   }
   Builder builder(scene.world);
-  const bool office = request.preset.starts_with("walking") || is_hand_recording(request);
+  const bool office = request.preset.starts_with("walking") || is_hand_recording(request) || is_mesh(request);
   const double clearance_m = office                    ? kHandheldClearance_m
                              : is_loop_preset(request) ? kFastRobotClearance_m
                                                        : kRobotClearance_m;
@@ -64,6 +73,8 @@ std::vector<Actor> populate_scene(const SynthRequest& request, Scene& scene, con
         chair ? make_rolling_chair(scene.palette, datasets::kFirstUndetectableObject + i, walk, key())
               : make_cart(scene.palette, datasets::kFirstUndetectableObject + i, walk, key()));
   }
+  if (scene.floor_m != 0.0)
+    for (Actor& actor : actors) lift(actor, scene.floor_m);
   return actors;
 }
 

@@ -20,6 +20,7 @@ const std::string kShortSuffix = "_short";
 const std::string kHomeTour = "home_tour";
 const std::string kTrack = "track";
 const std::string kFr3 = "fr3";
+const std::string kMesh = "mesh";
 
 /// A sequence of TUM RGB-D, and the people in it.
 struct Fr3Preset {
@@ -120,7 +121,17 @@ void check_files(const SynthRequest& request) {
         "needs a ground truth of OpenLORIS and the number of a sequence in it; pass --trajectory "
         "FILE --track-sequence N");
   }
+  if (is_mesh(request) && (request.mesh_file.empty() || request.trajectory_file.empty())) {
+    throw InputError("preset \"mesh\"",
+                     "needs a mesh and the path of the camera in it; pass --mesh FILE --trajectory FILE");
+  }
+  if (!is_mesh(request) && !request.mesh_file.empty()) {
+    throw InputError("preset \"" + request.preset + "\"", "has a scene of its own; remove it, or --mesh");
+  }
   check_hand_recording(request);
+  if (request.preset == "flight" && !request.rig_file.empty()) {
+    throw InputError("preset \"flight\"", "has the rig of its recording; remove --rig");
+  }
   if (request.preset == "flight" && !request.times_file.empty()) {
     throw InputError("preset \"flight\"", "has the times of its recording; remove --times");
   }
@@ -136,6 +147,8 @@ bool is_preset(const SynthRequest& request, const std::string& name) {
 
 bool is_hand_recording(const SynthRequest& request) { return request.preset.starts_with(kFr3); }
 
+bool is_mesh(const SynthRequest& request) { return request.preset == kMesh; }
+
 bool is_loop_preset(const SynthRequest& request) {
   return std::any_of(kLoopPresets.begin(), kLoopPresets.end(),
                      [&](const LoopPreset& preset) { return is_preset(request, preset.name); });
@@ -146,6 +159,7 @@ std::vector<std::string> preset_names() {
   for (const std::string& preset : kBasePresets) names.push_back(preset + kEmptySuffix);
   names.push_back("flight");
   names.push_back(kTrack);
+  names.push_back(kMesh);
   names.push_back(kFr3);
   for (const Fr3Preset& preset : kFr3Presets) names.push_back(preset.name);
   for (const LoopPreset& preset : kLoopPresets) {
@@ -165,8 +179,8 @@ SynthRequest preset_request(const std::string& name) {
   SynthRequest request;
   request.preset = name;
   use_loop_preset(request);
-  if (is_hand_recording(request)) use_hand_recording(request);
-  if (is_loop_preset(request) || is_hand_recording(request)) return request;
+  if (is_hand_recording(request) || is_mesh(request)) use_hand_recording(request);
+  if (is_loop_preset(request) || is_hand_recording(request) || is_mesh(request)) return request;
   if (name.starts_with("market") || name.starts_with("corridor")) use_robot_camera(request);
   if (name == kTrack) use_robot_camera(request);
   if (name == "flight") request.seconds = 25.0;
@@ -194,6 +208,11 @@ void check_request(const SynthRequest& request) {
           "rolling_shutter_s", "0 to the time between two frames");
   require(request.depth.noise_per_m >= 0.0 && request.depth.min_m < request.depth.max_m, "depth",
           "noise_per_m >= 0 and min_m < max_m");
+  if (request.layout == SequenceLayout::kOpenLoris && request.depth.units_per_m != 1000.0) {
+    throw InputError("synth: depth.units_per_m",
+                     "is not 1000, but the layout openloris has depth in millimeters; "
+                     "use the layout tum");
+  }
   require(request.depth.correlation_px >= 1, "depth.correlation_px", "1 or more");
   require(request.detector.miss_rate >= 0.0 && request.detector.miss_rate <= 0.9, "detector.miss_share",
           "0 to 0.9");
@@ -202,23 +221,6 @@ void check_request(const SynthRequest& request) {
           "10 Hz or more");
   require(request.start_s >= 0.0, "start_s", "0 or more");
   check_files(request);
-}
-
-Camera camera_of(const SynthRequest& request) {
-  return Camera{.width = request.width,
-                .height = request.height,
-                .fx = request.focal_px,
-                .fy = request.focal_px,
-                .cx = 0.5 * (request.width - 1),
-                .cy = 0.5 * (request.height - 1)};
-}
-
-Pose realsense_T_b_c() {
-  // Pose of the accelerometer in the color camera, from the calibration of an OpenLORIS package.
-  Eigen::Matrix4d T_c_b;
-  T_c_b << 0.999976, -0.00378981, -0.00580659, -0.0203839, 0.00381011, 0.999987, 0.00348894, 0.00506166,
-      0.00579329, -0.00351098, 0.999977, 0.0110642, 0.0, 0.0, 0.0, 1.0;
-  return Pose::from_matrix(T_c_b).inverse();
 }
 
 namespace {
@@ -283,8 +285,11 @@ std::string request_key(const SynthRequest& request) {
   nameless.trajectory_file.clear();
   nameless.imu_file.clear();
   nameless.times_file.clear();
+  nameless.mesh_file.clear();
+  nameless.rig_file.clear();
   std::uint64_t hash = fnv1a(request_text(nameless), 0xcbf29ce484222325ULL);
-  for (const std::filesystem::path& file : {request.trajectory_file, request.imu_file, request.times_file}) {
+  for (const std::filesystem::path& file :
+       {request.trajectory_file, request.imu_file, request.times_file, request.mesh_file, request.rig_file}) {
     if (!file.empty()) hash = fnv1a(contents(file), hash);
   }
   return fmt::format("{:016x}", hash);

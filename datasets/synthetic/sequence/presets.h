@@ -58,8 +58,8 @@ struct SynthRequest {
   ImuSensor imu;
   DetectorModel detector;
   double start_s = 5.0;  ///< preset `flight`: offset from the first time that both files cover; `fr3`: from
-                         ///< the first pose
-  /// Preset `flight`: poses T_w_b of the IMU (TUM text); `fr3`: poses of the camera, likewise; `home_tour`:
+                         ///< the first pose; `mesh`: likewise
+  /// Preset `flight`: poses T_w_b of the IMU (TUM text); `fr3`, `mesh`: of the camera, likewise; `home_tour`:
   /// ground truth of OpenLORIS home; `track`: ground truth of any scene of OpenLORIS.
   std::filesystem::path trajectory_file;
   std::filesystem::path imu_file;  ///< preset `flight`: IMU samples (EuRoC CSV)
@@ -67,6 +67,8 @@ struct SynthRequest {
   /// Recorded frame times, see `load_recorded_times`; they replace equal intervals. Not for the preset
   /// `flight`.
   std::filesystem::path times_file;
+  std::filesystem::path mesh_file;  ///< preset `mesh`: the scene, see `read_mesh`
+  std::filesystem::path rig_file;   ///< intrinsics, distortion and T_b_c of the camera, see `use_rig`
 };
 
 /// Visits every field in a fixed order, for printing, hashing and setting by key. The keys are part of the
@@ -140,6 +142,8 @@ void visit_fields(Visitor&& field, Config& request) {
   field("imu_file", request.imu_file.string());
   if (request.track_sequence > 0) field("track_sequence", request.track_sequence);
   if (!request.times_file.empty()) field("times_file", request.times_file.string());
+  if (!request.mesh_file.empty()) field("mesh_file", request.mesh_file.string());
+  if (!request.rig_file.empty()) field("rig_file", request.rig_file.string());
 }
 
 /// Names of all presets: walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with the suffix
@@ -161,6 +165,9 @@ void visit_fields(Visitor&& field, Config& request) {
 /// Whether the preset is `fr3`, or one of its sequences.
 [[nodiscard]] bool is_hand_recording(const SynthRequest& request);
 
+/// Whether the scene is that of a file: the preset `mesh`.
+[[nodiscard]] bool is_mesh(const SynthRequest& request);
+
 /// Whether the preset has the suffix `_short`.
 [[nodiscard]] bool is_short(const SynthRequest& request);
 
@@ -171,12 +178,6 @@ void visit_fields(Visitor&& field, Config& request) {
 /// Checks ranges and that the files of the preset exist.
 /// @throws InputError naming the first field that is out of range, or the file that is missing
 void check_request(const SynthRequest& request);
-
-/// Pinhole camera of the request; the principal point is the image center.
-[[nodiscard]] Camera camera_of(const SynthRequest& request);
-
-/// Camera pose in the body frame for the simulated presets: RealSense D435i, color camera to IMU.
-[[nodiscard]] Pose realsense_T_b_c();
 
 /// Incremented whenever the output for an unchanged request changes.
 inline constexpr int kRendererVersion = 7;

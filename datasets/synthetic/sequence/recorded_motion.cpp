@@ -228,6 +228,24 @@ std::vector<StampedPose> body_poses(const Trajectory& camera, const Pose& T_b_c,
   return poses;
 }
 
+constexpr double kHandKnot_s = 0.05;
+
+/// Long enough for poses at any rate: each knot needs some. @throws InputError if there is a gap
+double knot_interval_s(const std::filesystem::path& file, const std::vector<StampedPose>& poses) {
+  constexpr double kGap_s = 0.5, kPosesPerKnot = 1.5;
+  double longest_s = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const double interval_s = seconds_between(poses[i - 1].t, poses[i].t);
+    longest_s = std::max(longest_s, interval_s);
+    if (interval_s <= kGap_s) continue;
+    throw InputError(file.string(),
+                     fmt::format("has no pose for {:.1f} s after {:.3f} s; choose a part without "
+                                 "gaps with --start and --seconds",
+                                 interval_s, seconds_between(Timestamp{0}, poses[i - 1].t)));
+  }
+  return std::max(kHandKnot_s, kPosesPerKnot * longest_s);
+}
+
 /// Sets the mean position and direction of the camera.
 void describe_view(const Trajectory& camera, HandRecording& recording) {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
@@ -242,7 +260,6 @@ void describe_view(const Trajectory& camera, HandRecording& recording) {
 
 HandRecording load_hand_recording(const SynthRequest& request, const PathRequest& path,
                                   double first_frame_s) {
-  constexpr SmootherConfig kPosesOnly{.knot_interval_s = 0.05};
   FaultLog faults;
   const Trajectory truth = eval::read_tum_ground_truth(request.trajectory_file, "camera", faults).trajectory;
   const Timestamp earliest = after(truth.poses.front().t, std::max(request.start_s, kRecordingMargin_s));
@@ -261,7 +278,9 @@ HandRecording load_hand_recording(const SynthRequest& request, const PathRequest
   }
   const std::vector<StampedPose> poses =
       body_poses(truth, path.T_b_c, after(epoch, from_s), after(epoch, to_s));
-  HandRecording recording{smooth_motion({poses, {}, epoch, from_s, to_s}, kPosesOnly).path};
+  SmootherConfig poses_only{.knot_interval_s = kHandKnot_s};
+  if (is_mesh(request)) poses_only.knot_interval_s = knot_interval_s(request.trajectory_file, poses);
+  HandRecording recording{smooth_motion({poses, {}, epoch, from_s, to_s}, poses_only).path};
   recording.epoch = epoch;
   describe_view(truth, recording);
   return recording;

@@ -9,8 +9,10 @@
 
 #include "core/base/error.h"
 #include "datasets/synthetic/counter_random.h"
+#include "datasets/synthetic/scenes/mesh_scene.h"
 #include "datasets/synthetic/sequence/populate_scene.h"
 #include "datasets/synthetic/sequence/recorded_motion.h"
+#include "datasets/synthetic/sequence/request_rig.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -28,16 +30,6 @@ HandMotion hand_motion_of(const std::string& preset) {
   return HandMotion::kXyz;
 }
 
-Rig rig_of(const SynthRequest& request) {
-  Rig rig;
-  rig.camera = camera_of(request);
-  rig.depth_units_per_m = request.depth.units_per_m;
-  rig.has_imu = request.layout == SequenceLayout::kOpenLoris;
-  rig.T_b_c = realsense_T_b_c();
-  rig.imu_noise = request.imu.noise;
-  return rig;
-}
-
 double last_path_time(const SynthRequest& request) { return kFirstFrame_s + request.seconds + kTail_s; }
 
 Scene scene_of(const SynthRequest& request) {
@@ -53,12 +45,17 @@ Scene scene_of(const SynthRequest& request) {
   return build_office(request.seed);
 }
 
-std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose& T_b_c) {
+std::vector<Pose> camera_poses(const PathSpline& path, const Pose& T_b_c) {
   constexpr double kInterval_s = 0.05;
+  std::vector<Pose> poses;
+  for (double t_s = path.first_s(); t_s < path.last_s(); t_s += kInterval_s)
+    poses.push_back(path.pose_at(t_s) * T_b_c);
+  return poses;
+}
+
+std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose& T_b_c) {
   std::vector<Eigen::Vector3d> positions;
-  for (double t_s = path.first_s(); t_s < path.last_s(); t_s += kInterval_s) {
-    positions.push_back((path.pose_at(t_s) * T_b_c).p);
-  }
+  for (const Pose& T_w_c : camera_poses(path, T_b_c)) positions.push_back(T_w_c.p);
   return positions;
 }
 
@@ -125,7 +122,15 @@ MovingBody hand_recording_motion(const SynthRequest& request, const PathRequest&
   return {std::move(scene), recording.body_path.transformed(T_w_m), recording.epoch};
 }
 
+/// A scanned scene with the path of the camera in its frame.
+MovingBody mesh_motion(const SynthRequest& request, const PathRequest& path) {
+  HandRecording recording = load_hand_recording(request, path, kFirstFrame_s);
+  Scene scene = build_mesh_scene(request.mesh_file, camera_poses(recording.body_path, path.T_b_c));
+  return {std::move(scene), std::move(recording.body_path), recording.epoch};
+}
+
 MovingBody motion_of(const SynthRequest& request, const PathRequest& path) {
+  if (is_mesh(request)) return mesh_motion(request, path);
   if (is_hand_recording(request)) return hand_recording_motion(request, path);
   if (request.preset == "home_tour") return home_motion(request, path);
   if (request.preset == "track") return track_motion(request, path);
@@ -149,7 +154,7 @@ SceneSetup simulated_setup(const SynthRequest& request) {
   const PathRequest path_request{rig.T_b_c, request.seed, 0.0, last_s};
   auto [scene, path, motion_epoch] = motion_of(request, path_request);
   const Timestamp epoch =
-      request.times_file.empty() || is_hand_recording(request)
+      request.times_file.empty() || is_hand_recording(request) || is_mesh(request)
           ? motion_epoch
           : after(load_recorded_times(request.times_file, request.seconds).color.front(), -kFirstFrame_s);
   ImuRecord imu = simulate_imu(path, request.imu, {epoch, 0.0, last_s, request.seed});

@@ -112,10 +112,10 @@ void SequenceWriter::write_rig(const Rig& rig, const SynthRequest& request) cons
     write_text(
         "rig.toml",
         fmt::format("[camera]\nwidth = {}\nheight = {}\nfx = {:.9f}\nfy = {:.9f}\ncx = {:.9f}\ncy = {:.9f}\n"
-                    "model = \"radial-tangential\"\ndistortion = [0.0, 0.0, 0.0, 0.0, 0.0]\n\n"
+                    "model = \"radial-tangential\"\ndistortion = [{:#}]\n\n"
                     "[depth]\nscale = {:.1f}\n",
                     camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy,
-                    rig.depth_units_per_m));
+                    fmt::join(camera.coefficients(), ", "), rig.depth_units_per_m));
     return;
   }
   write_text(

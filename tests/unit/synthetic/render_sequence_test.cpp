@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/synthetic/sequence/render_sequence.h"
+#include "datasets/synthetic/sequence/request_rig.h"
 
 #include <gtest/gtest.h>
 

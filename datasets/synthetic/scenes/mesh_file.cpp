@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/scenes/mesh_file.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/error.h"
+#include "datasets/io/image_io.h"
+
+namespace stillpoint::synth {
+namespace {
+
+namespace fs = std::filesystem;
+
+Eigen::Vector3f vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+std::uint32_t color_of(const aiColor4D& color) {
+  const auto byte = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+  };
+  return Texture::packed({byte(color.r), byte(color.g), byte(color.b)});
+}
+
+/// The image with the sides of a texture. @throws InputError if it cannot be read
+cv::Mat texture_image(const fs::path& file) {
+  constexpr int kLargest_px = 8192;
+  cv::Mat image = datasets::read_image(file);
+  if (image.channels() == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2RGB);
+  const auto side = [&](int px) {
+    return std::min(kLargest_px, static_cast<int>(std::bit_ceil(static_cast<unsigned>(px))));
+  };
+  cv::resize(image, image, cv::Size(side(image.cols), side(image.rows)));
+  return image;
+}
+
+/// Adds the meshes of a file to the one of a world.
+class MeshCollector {
+ public:
+  MeshCollector(fs::path file, World& world) : file_(std::move(file)), world_(world) {}
+
+  void add(const aiScene& scene, const aiMesh& mesh) {
+    if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0)
+      return;  // points and lines beside the surfaces
+    const std::optional<int> texture = texture_of(scene, mesh);
+    if (!texture && !mesh.HasVertexColors(0)) {
+      throw InputError(file_.string(),
+                       "has triangles with neither vertex colors nor a texture, on which nothing "
+                       "can be tracked; export the mesh with its colors");
+    }
+    StaticMesh& target = world_.mesh;
+    const auto first = static_cast<std::uint32_t>(target.vertices.size());
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      target.vertices.push_back(vector_of(mesh.mVertices[i]));
+      if (!target.vertices.back().allFinite())
+        throw InputError(file_.string(), fmt::format("vertex {} is not finite; repair the mesh", first + i));
+    }
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      MeshTriangle triangle =
+          texture ? textured(mesh, mesh.mFaces[i], *texture) : colored(mesh, mesh.mFaces[i]);
+      for (int corner = 0; corner < 3; ++corner)
+        triangle.corners[corner] = first + mesh.mFaces[i].mIndices[corner];
+      target.triangles.push_back(triangle);
+    }
+  }
+
+ private:
+  /// Number of the texture of a mesh in the world; nothing if it has none.
+  std::optional<int> texture_of(const aiScene& scene, const aiMesh& mesh) {
+    aiString name;
+    const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+    if (!mesh.HasTextureCoords(0) || material.GetTexture(aiTextureType_DIFFUSE, 0, &name) != aiReturn_SUCCESS)
+      return {};
+    std::string path = name.C_Str();
+    std::ranges::replace(path, '\\', '/');  // of programs on Windows
+    const fs::path image = file_.parent_path() / path;
+    const auto [found, is_new] = textures_.try_emplace(image, static_cast<int>(world_.textures.size()));
+    if (is_new) world_.textures.emplace_back(texture_image(image));
+    return found->second;
+  }
+
+  [[nodiscard]] MeshTriangle textured(const aiMesh& mesh, const aiFace& face, int texture) const {
+    MeshTriangle triangle{.texture = texture};
+    const Texture& image = world_.textures[static_cast<std::size_t>(texture)];
+    std::array<Eigen::Vector3f, 3> p;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const aiVector3D& uv = mesh.mTextureCoords[0][face.mIndices[corner]];
+      triangle.uv[corner] = {uv.x, 1.0F - uv.y};  // files count rows from the lower edge
+      p[corner] = vector_of(mesh.mVertices[face.mIndices[corner]]);
+    }
+    const Eigen::Vector2f side = triangle.uv[1] - triangle.uv[0], other = triangle.uv[2] - triangle.uv[0];
+    const auto texels = static_cast<float>(image.width()) * static_cast<float>(image.height()) *
+                        std::abs(side.x() * other.y() - side.y() * other.x());
+    const float area_m2 = (p[1] - p[0]).cross(p[2] - p[0]).norm();
+    triangle.texels_per_m = std::sqrt(texels / std::max(area_m2, 1e-12F));
+    return triangle;
+  }
+
+  [[nodiscard]] static MeshTriangle colored(const aiMesh& mesh, const aiFace& face) {
+    MeshTriangle triangle;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      triangle.colors[corner] = color_of(mesh.mColors[0][face.mIndices[corner]]);
+    triangle.colors[3] = triangle.colors[2];
+    return triangle;
+  }
+
+  fs::path file_;
+  World& world_;
+  std::map<fs::path, int> textures_;
+};
+
+}  // namespace
+
+void read_mesh(const fs::path& file, World& world) {
+  if (file.extension() != ".ply" && file.extension() != ".obj")
+    throw InputError(file.string(), "is not named as a PLY or OBJ file; convert the mesh to .ply or .obj");
+  Assimp::Importer importer;
+  const aiScene* const scene = importer.ReadFile(
+      file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
+  if (scene == nullptr) {
+    throw InputError(file.string(),
+                     std::string("cannot be read as a mesh: ") + importer.GetErrorString() +
+                         "; export it with faces (reconstruct the surface of a point cloud first)");
+  }
+  MeshCollector collector(file, world);
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) collector.add(*scene, *scene->mMeshes[i]);
+  if (world.mesh.triangles.empty())
+    throw InputError(file.string(), "has no faces; reconstruct the surface of the point cloud first");
+}
+
+}  // namespace stillpoint::synth
