@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/executors/hosts.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "bench/process/child_process.h"
+#include "bench/process/temporary_path.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
@@ -26,34 +23,10 @@ namespace fs = std::filesystem;
 constexpr int kNotStarted = 127;
 constexpr int kSignalCode = 128;
 
-/// A temporary file, removed with the object.
-class OutputCapture {
- public:
-  OutputCapture() {
-    std::string name = (fs::temp_directory_path() / "stillpoint-output-XXXXXX").string();
-    const int file = mkstemp(name.data());
-    if (file < 0)
-      throw InputError(name, std::string("cannot be created: ") + std::strerror(errno) + "; set TMPDIR");
-    close(file);
-    path_ = name;
-  }
-  ~OutputCapture() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  OutputCapture(const OutputCapture&) = delete;
-  OutputCapture& operator=(const OutputCapture&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 }  // namespace
 
 ToolResult call_tool(const ToolCall& call) {
-  const OutputCapture capture;
+  const TemporaryPath capture(TemporaryPath::Kind::kFile, "output");
   ProcessPool pool(call.stop_requested);
   pool.start(0, {.program = call.program, .arguments = call.arguments, .output = capture.path()});
   const ProcessResult process = pool.wait_next()->second;

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "bench/analysis/commit_history.h"
-#include "bench/cli/analysis/evo_import.h"
+#include "bench/cli/analysis/import/evo_import.h"
 #include "bench/cli/command_line.h"
 #include "bench/config/spelling.h"
 #include "bench/model/metrics.h"

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/cli/analysis/evo_import.h"
-
-#include <stdlib.h>
+#include "bench/cli/analysis/import/evo_import.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -20,6 +17,7 @@
 
 #include "bench/model/json_problem.h"
 #include "bench/model/metrics.h"
+#include "bench/process/temporary_path.h"
 #include "bench/store/store.h"
 #include "bench/store/store_writer.h"
 #include "core/base/content_hash.h"
@@ -36,34 +34,20 @@ using Json = nlohmann::ordered_json;
 /// The files of an archive, in a temporary folder that is removed with this object.
 class ExtractedArchive {
  public:
-  explicit ExtractedArchive(const fs::path& archive) : ExtractedArchive() {
-    // The object exists from here on: its destructor runs if the extraction throws.
-    static_cast<void>(datasets::extract_archive(archive, folder_, {}, {}));
+  explicit ExtractedArchive(const fs::path& archive) {
+    static_cast<void>(datasets::extract_archive(archive, folder_.path(), {}, {}));
   }
-  ~ExtractedArchive() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  ExtractedArchive(const ExtractedArchive&) = delete;
-  ExtractedArchive& operator=(const ExtractedArchive&) = delete;
 
   /// @throws InputError if there is no such file
   [[nodiscard]] std::string text(const std::string& name, const fs::path& archive) const {
-    if (!fs::exists(folder_ / name))
+    if (!fs::exists(folder_.path() / name))
       throw InputError(archive.string(),
                        "has no " + name + "; it is no result of evo, as written by `evo_ape --save_results`");
-    return eval::read_text_file(folder_ / name);
+    return eval::read_text_file(folder_.path() / name);
   }
 
  private:
-  ExtractedArchive() {
-    std::string name = (fs::temp_directory_path() / "stillpoint-evo-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw InputError(name, std::string("cannot be created: ") + std::strerror(errno) + "; set TMPDIR");
-    folder_ = name;
-  }
-
-  fs::path folder_;
+  TemporaryPath folder_{TemporaryPath::Kind::kFolder, "evo"};
 };
 
 /// A vector of doubles as numpy.save writes it: "\x93NUMPY", version, length of the header, a header in
