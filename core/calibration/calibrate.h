@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Batch estimation of the calibration from a recording of an unknown scene, without a target.
+/// Batch estimation of the calibration from one or several recordings of unknown scenes, without a target.
 ///
 /// The minimum over keyframe poses, landmarks, velocities, biases, gravity and the shared parameters of the
 /// rig of
@@ -144,6 +144,12 @@ struct CalibrationInput {
   /// Whether the depth images have the pixels of the color camera; else those of `depth_camera`.
   bool depth_is_registered = true;
 };
+
+/// Adds another recording of the same device, to which only the calibration is common. Its times are moved
+/// behind those of the recordings before it; `halves` of all are then, as a rule, different recordings.
+/// @throws InputError if the stated calibrations differ, or one has inertial data or registered depth images
+/// and the other has not
+void append_recording(CalibrationInput& all, CalibrationInput next);
 
 /// @throws InputError if fewer than ten keyframes or 50 landmarks remain, or without both depth and IMU
 [[nodiscard]] CalibrationResult calibrate(const CalibrationInput& input, const CalibrationOptions& options);

@@ -80,5 +80,15 @@ TEST(CalibrateCommand, WritesTheLastIterationWhenInterrupted) {
   EXPECT_TRUE(fs::exists(rig));
 }
 
+TEST(CalibrateCommand, TakesSeveralRecordingsOfADevice) {
+  const std::string sequence = rendered_sequence().string();
+  const ProgramResult one = run_program({"calibrate", sequence, "--json", "--max-frames", "60"});
+  const ProgramResult two = run_program({"calibrate", sequence, sequence, "--json", "--max-frames", "60"});
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  const nlohmann::json a = nlohmann::json::parse(one.out), b = nlohmann::json::parse(two.out);
+  EXPECT_EQ(b["sequence"], a["sequence"].get<std::string>() + ", " + a["sequence"].get<std::string>());
+  EXPECT_EQ(b["keyframes"], 2 * a["keyframes"].get<int>());
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint calibrate`: runs the odometry on a recording, and estimates the calibration from its tracks.
+// `stillpoint calibrate`: runs the odometry on recordings, and estimates the calibration from its tracks.
 #include <algorithm>
 #include <functional>
 #include <iostream>
@@ -33,8 +33,8 @@ constexpr double kMostKeyframes = 300.0;
 constexpr std::size_t kIterationsPerRound = 25;
 
 struct CalibrateArguments {
-  std::string sequence, out, out_format, rig, format, base = "stillpoint", variant;
-  std::vector<std::string> settings, topics, faults, keep;
+  std::string out, out_format, rig, format, base = "stillpoint", variant;
+  std::vector<std::string> sequences, settings, topics, faults, keep;
   double start_s = 0.0;
   int max_frames = 0;
   bool depth_camera = false, json = false;
@@ -79,9 +79,10 @@ OutputRules rules_of(const CalibrateArguments& arguments) {
 
 /// @param raw_depth without registration of depth images to the color camera
 /// @return null if interrupted
-std::unique_ptr<datasets::SensorStream> open_stream(const CalibrateArguments& arguments, bool raw_depth) {
+std::unique_ptr<datasets::SensorStream> open_stream(const CalibrateArguments& arguments,
+                                                    const std::string& sequence, bool raw_depth) {
   const bool cached = arguments.start_s == 0.0 && !raw_depth;
-  auto stream = open_with_progress(resolve_sequence(arguments.sequence),
+  auto stream = open_with_progress(resolve_sequence(sequence),
                                    {.format = arguments.format,
                                     .rig_file = arguments.rig,
                                     .topics = arguments.topics,
@@ -102,8 +103,9 @@ double duration_s(const datasets::SequenceInfo& info, int max_frames) {
 }
 
 /// The depth images of another camera as they are.
-void load_raw_depth(const CalibrateArguments& arguments, CalibrationInput& input) {
-  const std::unique_ptr<datasets::SensorStream> raw = open_stream(arguments, true);
+void load_raw_depth(const CalibrateArguments& arguments, const std::string& sequence,
+                    CalibrationInput& input) {
+  const std::unique_ptr<datasets::SensorStream> raw = open_stream(arguments, sequence, true);
   if (!raw) return;
   for (CalibrationSection& section : input.sections) {
     for (CalibrationKeyframe& keyframe : section.keyframes)
@@ -111,16 +113,23 @@ void load_raw_depth(const CalibrateArguments& arguments, CalibrationInput& input
   }
 }
 
+/// A recording to calibrate from.
+struct Recording {
+  std::string sequence;
+  std::unique_ptr<datasets::SensorStream> stream;
+};
+
 /// Keyframes of a run of the odometry. @return nothing if interrupted
-std::optional<CalibrationInput> record(const CalibrateArguments& arguments,
-                                       const datasets::SensorStream& stream) {
+/// @param interval_s between keyframes
+std::optional<CalibrationInput> record(const CalibrateArguments& arguments, const Recording& recording,
+                                       double interval_s) {
+  const datasets::SensorStream& stream = *recording.stream;
   const datasets::SequenceInfo& info = stream.info();
   const bool inertial = info.rig.has_imu && !info.imu.empty();
   const std::string variant = arguments.variant.empty() && !inertial ? "vo" : arguments.variant;
   const OdometryConfig config = load_config({arguments.base, variant, arguments.settings});
   const RunSpec spec{.config = config, .max_frames = static_cast<std::size_t>(arguments.max_frames)};
-  CalibrationCollector collector(
-      std::max(kLeastInterval_s, duration_s(info, arguments.max_frames) / kMostKeyframes));
+  CalibrationCollector collector(interval_s);
   ProgressLine progress("tracking " + info.name, info.frame_times.size(), "frames");
   RunControl control{.stop_requested = interrupt_requested};
   control.on_frame.emplace_back([&](const FrameReport& report) {
@@ -138,7 +147,7 @@ std::optional<CalibrationInput> record(const CalibrateArguments& arguments,
   if (info.depth_camera) {
     input.stated.depth_camera = info.depth_camera->camera;
     input.stated.T_c_d = info.depth_camera->T_c_d;
-    load_raw_depth(arguments, input);
+    load_raw_depth(arguments, recording.sequence, input);
   }
   return input;
 }
@@ -173,20 +182,52 @@ std::string calibration_file(const CalibrationSubject& subject, const Calibratio
                                                     : datasets::rig_text(result.calibration.rig, format);
 }
 
-int calibrate_sequence(const CalibrateArguments& arguments) {
+/// @return empty if interrupted
+std::vector<Recording> open_recordings(const CalibrateArguments& arguments) {
+  std::vector<Recording> recordings;
+  for (const std::string& sequence : arguments.sequences) {
+    recordings.push_back({sequence, open_stream(arguments, sequence, false)});
+    if (!recordings.back().stream) return {};
+    for (const std::string& note : recordings.back().stream->info().notes) spdlog::info("{}", note);
+  }
+  return recordings;
+}
+
+/// The keyframes of all recordings. @return nothing if interrupted
+std::optional<CalibrationInput> record_all(const CalibrateArguments& arguments,
+                                           const std::vector<Recording>& recordings) {
+  double all_s = 0.0;
+  for (const Recording& recording : recordings)
+    all_s += duration_s(recording.stream->info(), arguments.max_frames);
+  std::optional<CalibrationInput> all;
+  for (const Recording& recording : recordings) {
+    std::optional<CalibrationInput> next =
+        record(arguments, recording, std::max(kLeastInterval_s, all_s / kMostKeyframes));
+    if (!next) return std::nullopt;
+    if (!all) {
+      all = std::move(next);
+    } else {
+      append_recording(*all, std::move(*next));
+    }
+  }
+  return all;
+}
+
+int calibrate_sequences(const CalibrateArguments& arguments) {
   static_cast<void>(switches_of(arguments));
   const datasets::RigFormat format = out_format_of(arguments);
   if (!arguments.out.empty()) require_safe_output(arguments.out, rules_of(arguments));
   install_interrupt_handlers();
-  const std::unique_ptr<datasets::SensorStream> stream = open_stream(arguments, false);
-  if (!stream) return kExitInterrupted;
-  for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
-  const std::optional<CalibrationInput> input = record(arguments, *stream);
+  const std::vector<Recording> recordings = open_recordings(arguments);
+  if (recordings.empty()) return kExitInterrupted;
+  const std::optional<CalibrationInput> input = record_all(arguments, recordings);
   if (!input) return kExitInterrupted;
   const CalibrationResult result = estimate(arguments, *input);
-  const CalibrationSubject subject{.sequence = stream->info().name,
-                                   .has_imu = !input->imu.empty(),
-                                   .has_depth_camera = !input->depth_is_registered};
+  std::string names;
+  for (const Recording& recording : recordings)
+    names += (names.empty() ? "" : ", ") + recording.stream->info().name;
+  const CalibrationSubject subject{
+      .sequence = names, .has_imu = !input->imu.empty(), .has_depth_camera = !input->depth_is_registered};
   std::cout << (arguments.json ? calibration_json(subject, result) : calibration_table(subject, result));
   if (!arguments.out.empty())
     write_output(arguments.out, calibration_file(subject, result, format), rules_of(arguments));
@@ -200,10 +241,10 @@ Command calibrate_command() {
   const auto a = std::make_shared<CalibrateArguments>();
   return {
       .name = "calibrate",
-      .summary = "Estimate the calibration from a recording, without a target; write a rig file",
+      .summary = "Estimate the calibration from recordings, without a target; write a rig file",
       .example = "calibrate walking_xyz --out rig.toml",
       .options =
-          {{"SEQ", "Sequence folder, bag or preset name", &a->sequence},
+          {{"SEQ", "Sequence folders, bags or preset names, of one device", &a->sequences},
            {"--out", "Rig file to write; an existing file is not replaced", &a->out},
            {"--out-format", "Program that is to read --out: " + enum_list<datasets::RigFormat>() + " [toml]",
             &a->out_format},
@@ -224,7 +265,7 @@ Command calibrate_command() {
             {0, 1e9}},
            {"--max-frames", "Maximum number of frames; 0 = all", &a->max_frames, {0, 1e9}},
            {"--json", "Print JSON with full precision", &a->json}},
-      .action = [a] { return calibrate_sequence(*a); }};
+      .action = [a] { return calibrate_sequences(*a); }};
 }
 
 }  // namespace stillpoint::bench

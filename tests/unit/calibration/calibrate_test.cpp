@@ -188,5 +188,31 @@ TEST(CalibrationCollector, LeavesOutTracksThatWereDynamicAtAnyTime) {
     EXPECT_TRUE(std::ranges::none_of(keyframe.features, [&](const auto& f) { return f.track == dynamic; }));
 }
 
+TEST(Calibrate, RecordingsOfOneDeviceShareTheCalibrationOnly) {
+  const Rig stated = stated_rig(3);
+  CalibrationInput all = recording(recorded_motion(3), stated);
+  const CalibrationResult one = calibrate(all, {.hold_out = false});
+  append_recording(all, recording(recorded_motion(4), stated));  // at the same times
+  append_recording(all, recording(recorded_motion(5), stated));
+  const CalibrationResult result = calibrate(all, {.hold_out = false});
+  ASSERT_TRUE(result.usable);
+  EXPECT_EQ(result.keyframes, 3 * one.keyframes);
+  EXPECT_EQ(result.inertial_factors, 3 * one.inertial_factors);
+  for (const char* name : {"fx", "cx", "depth scale", "time_offset_s", "T_b_c rotation x"}) {
+    const ParameterEstimate& estimate = parameter(result, name);
+    EXPECT_LT(std::abs(estimate.value - true_value(estimate, stated)), 3.0 * estimate.sigma) << name;
+    EXPECT_LE(estimate.sigma, parameter(one, name).sigma) << name;
+  }
+}
+
+TEST(Calibrate, RecordingsOfDifferentDevicesAreRefused) {
+  const auto append = [](const CalibrationInput& next) {
+    CalibrationInput all = recording(recorded_motion(3), stated_rig(3));
+    append_recording(all, next);
+  };
+  expect_input_error([&] { append(recording(recorded_motion(4), stated_rig(4))); }, {"differ", "--rig"});
+  expect_input_error([&] { append(recording(recorded_motion(4), stated_rig(3), false)); }, {"inertial data"});
+}
+
 }  // namespace
 }  // namespace stillpoint
