@@ -178,9 +178,11 @@ std::string shortened(const std::string& text, double size, double width) {
 
 /// Between the left edge and the plot areas: tick texts and the title of the y axis.
 double left_margin(const Chart& chart, const ChartLayout& layout) {
+  if (std::ranges::none_of(chart.panels, &ChartPanel::has_axes)) return 2.0 * layout.right_margin();
   double texts = 0.0;
   bool has_title = false;
   for (const ChartPanel& panel : chart.panels) {
+    if (!panel.has_axes) continue;
     const double height = panel.height > 0.0 ? panel.height : layout.width;
     for (const auto& [value, text] : ticks_of(panel.y, most_y_ticks(layout, height)))
       texts = std::max(texts, text_width(text, layout.font));
@@ -251,6 +253,7 @@ void draw_y_axis(Drawing& drawing, const ChartPanel& panel, const PlotArea& area
 }
 
 void draw_panel(Drawing& drawing, const ChartPanel& panel, const PlotArea& area, const ChartLayout& layout) {
+  if (!panel.has_axes) return panel.draw(drawing, area);
   draw_x_axis(drawing, panel, area, layout);
   draw_y_axis(drawing, panel, area, layout);
   const auto& [left, top] = area.top_left;
@@ -340,18 +343,40 @@ void draw_color_bar(Drawing& drawing, const ColorBar& bar, const PlotArea& above
   constexpr double kHeightEm = 0.7;
   const double top = drawing.height + 0.3 * layout.font;
   const double bottom = top + kHeightEm * layout.font;
-  const PlotArea area{{above.top_left.x, top}, {above.bottom_right.x, bottom}, {0.0, bar.most}, {0.0, 1.0}};
+  const ValueRange range{bar.least, bar.most};
+  const PlotArea area{{above.top_left.x, top}, {above.bottom_right.x, bottom}, range, {0.0, 1.0}};
   for (int k = 0; k < kSteps; ++k) {
-    const double from = bar.most * k / kSteps;
+    const double from = range.low + range.length() * k / kSteps;
     // Steps overlap, since viewers show gaps between adjacent polygons.
-    const double to = bar.most * std::min(k + 2, kSteps) / kSteps;
+    const double to = range.low + range.length() * std::min(k + 2, kSteps) / kSteps;
     drawing.marks.push_back(
         Polygon{{area.at(from, 0.0), area.at(to, 0.0), area.at(to, 1.0), area.at(from, 1.0)},
-                error_color(0.5 * (from + bar.most * (k + 1) / kSteps), bar.most)});
+                error_color(k + 0.5, kSteps)});
   }
-  ChartPanel axis{.x = {{0.0, bar.most}, bar.title}, .y = {}};
+  ChartPanel axis{.x = {range, bar.title}, .y = {}};
   draw_x_axis(drawing, axis, area, layout);
   drawing.height = bottom + layout.x_axis_height(true);
+}
+
+/// Draws a text below `drawing.height`, broken between words at the width of the drawing.
+void draw_note(Drawing& drawing, const std::string& note, const ChartLayout& layout) {
+  const double font = 0.85 * layout.font;
+  for (std::size_t begin = 0; begin < note.size();) {
+    std::size_t end = std::string::npos;  // of the line
+    for (std::size_t space = note.find(' ', begin);; space = note.find(' ', space + 1)) {
+      const bool fits =
+          text_width(note.substr(begin, space - begin), font) <= layout.width - 2.0 * layout.margin();
+      if (end == std::string::npos || fits) end = std::min(space, note.size());
+      if (!fits || space == std::string::npos) break;
+    }
+    drawing.height += 1.3 * font;
+    drawing.marks.push_back(Label{{layout.margin(), drawing.height - 0.2 * layout.font},
+                                  note.substr(begin, end - begin),
+                                  font,
+                                  Anchor::kLeft,
+                                  theme::kFrame});
+    begin = end + 1;
+  }
 }
 
 }  // namespace
@@ -379,15 +404,7 @@ Drawing draw_chart(const Chart& chart, const FigureSize& size) {
         (panel.shares_x_below ? theme::kTickLength : layout.x_axis_height(!panel.x.title.empty()));
   }
   if (chart.color_bar) draw_color_bar(drawing, *chart.color_bar, area, layout);
-  if (!chart.note.empty()) {
-    drawing.height += layout.line_height();
-    drawing.marks.push_back(
-        Label{{layout.margin(), drawing.height - 0.2 * layout.font},
-              shortened(chart.note, 0.85 * layout.font, layout.width - 2.0 * layout.margin()),
-              0.85 * layout.font,
-              Anchor::kLeft,
-              theme::kFrame});
-  }
+  draw_note(drawing, chart.note, layout);
   drawing.height += layout.margin() + 0.3 * layout.font;
   return drawing;
 }

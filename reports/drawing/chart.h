@@ -71,6 +71,7 @@ struct ChartPanel {
   ChartAxis y;
   double height = 0.0;          ///< 0: both axes have the same scale
   bool shares_x_below = false;  ///< the next panel has the same x axis, which has no texts here
+  bool has_axes = true;         ///< with ticks, grid and frame; else `draw` draws its own
   std::function<void(Drawing&, const PlotArea&)> draw = {};
 };
 
@@ -83,8 +84,9 @@ struct LegendRow {
   std::vector<std::string> numbers;
 };
 
-/// Scale of the colors of `theme::kErrorColors`, from 0.
+/// Scale of the colors of `theme::kErrorColors`; values beyond its ends have the colors of the ends.
 struct ColorBar {
+  double least = 0.0;
   double most = 1.0;
   std::string title;
 };
@@ -96,7 +98,7 @@ struct Chart {
   std::vector<LegendRow> legend = {};
   bool start_and_end = false;  ///< explains their marks in the legend
   std::optional<ColorBar> color_bar = std::nullopt;
-  std::string note = {};  ///< a line of text at the bottom
+  std::string note = {};  ///< text at the bottom, in as many lines as it needs
 };
 
 /// Size of a figure.

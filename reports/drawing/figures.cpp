@@ -516,7 +516,7 @@ Chart speed_chart(const FigureInput& input, const FigureSize& size) {
 Chart chart_of(FigureKind kind, const FigureInput& input, const FigureSize& size) {
   switch (kind) {
     case FigureKind::kPath:
-      return path_chart(input, size.font_size_pt);
+      return path_chart(input, size);
     case FigureKind::kAxes:
       return axes_chart(input, size);
     case FigureKind::kRotation:

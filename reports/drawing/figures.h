@@ -36,11 +36,32 @@ struct PlottedRun {
   const eval::Evaluation* evaluation = nullptr;  ///< with errors per pose
 };
 
+/// Axes of `path` to the right and up, or an orthographic view in 3-D, named as evo's plot modes.
+enum class PlotMode { kXy, kXz, kYx, kYz, kZx, kZy, kXyz };
+constexpr auto enum_names(PlotMode) {
+  return EnumNames<PlotMode, 7>{{{PlotMode::kXy, "xy"},
+                                 {PlotMode::kXz, "xz"},
+                                 {PlotMode::kYx, "yx"},
+                                 {PlotMode::kYz, "yz"},
+                                 {PlotMode::kZx, "zx"},
+                                 {PlotMode::kZy, "zy"},
+                                 {PlotMode::kXyz, "xyz"}}};
+}
+
+struct PathOptions {
+  std::optional<PlotMode> mode;        ///< none: plan and side view in which the ground truth is longest
+  double least_error_m = 0.0;          ///< limits of the color bar of a single estimate
+  std::optional<double> most_error_m;  ///< none: the largest error
+  bool pose_axes = false;              ///< of about 20 poses of each path
+  bool correspondences = false;        ///< lines from poses to the ground truth at their times
+};
+
 struct FigureInput {
   const Trajectory& gt;  ///< not empty
   std::span<const PlottedRun> runs;
   double offset_s = 0.0;    ///< added to the stamps of the estimates
   double max_gap_s = 0.11;  ///< of ground truth that is interpolated for relative errors, to each neighbor
+  PathOptions path = {};
 };
 
 /// path: plan and side view, to scale; a single estimate is colored by its error. axes: x, y, z over time.
@@ -64,7 +85,7 @@ struct FigureInput {
 
 /// The chart of `FigureKind::kPath`.
 /// @param input must outlive the chart, as its panels refer to it
-/// @param font of texts in the panels
-[[nodiscard]] Chart path_chart(const FigureInput& input, double font);
+/// @throws InputError if the lower limit of the color bar is not below the upper one
+[[nodiscard]] Chart path_chart(const FigureInput& input, const FigureSize& size);
 
 }  // namespace stillpoint::report

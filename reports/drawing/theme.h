@@ -46,6 +46,9 @@ inline constexpr std::array<LineStyle, 6> kEstimates{{{{83, 133, 180}, {}},
                                                       {{147, 67, 233}, {9.0, 1.2, 3.0, 1.2}},
                                                       {{113, 53, 79}, {2.8, 1.0}}}};
 
+/// x, y and z of a pose, as usual in robotics.
+inline constexpr std::array<Color, 3> kPoseAxes{{{200, 30, 30}, {30, 140, 50}, {40, 80, 210}}};
+
 /// From no error to the largest: viridis without its lightest quarter, dark for large errors.
 inline constexpr std::array<Color, 7> kErrorColors{{{94, 201, 98},
                                                     {40, 174, 128},

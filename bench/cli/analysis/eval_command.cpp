@@ -260,8 +260,36 @@ int evaluate_files(const EvalArguments& arguments) {
 }
 
 /// @param a receives the values when the command line is parsed
-std::vector<Option> options_of(EvalArguments& a) {
+std::vector<Option> figure_options(EvalArguments& a) {
   return {
+      {"--map", "Write a plan with scale and north arrow; GT may be NMEA sentences of a GNSS receiver",
+       &a.map},
+      {"--plot", "Write figures of trajectories and errors (.pdf, .svg, .png or .html)", &a.plot},
+      {"--figure",
+       "Figure of --plot: " + enum_list<report::FigureKind>() + " or all; may be repeated [path, error]",
+       &a.figures},
+      {"--plot-mode", "Axes of the path figure: " + enum_list<report::PlotMode>() + " [plan and side view]",
+       &a.plot_mode},
+      {"--path-mark", "Mark in the path figure: axes (of poses) or correspondences; may be repeated",
+       &a.path_marks},
+      {"--colormap-min",
+       "Lower limit of the color bar of a single estimate [m]",
+       &a.colormap_min_m,
+       {0, 1e9}},
+      {"--colormap-max",
+       "Upper limit of the color bar of a single estimate [m] [its largest error]",
+       &a.colormap_max_m,
+       {1e-9, 1e9}},
+      {"--label",
+       "Name of an estimate in tables and figures, in the order of EST; may be repeated [its file]",
+       &a.labels},
+      {"--width", "Width of figures: column (85 mm), page (180 mm), or a length such as 120mm", &a.width},
+      {"--font-size", "Size of the font in figures [pt]", &a.font_size_pt, {4, 24}}};
+}
+
+/// @param a as for `figure_options`
+std::vector<Option> options_of(EvalArguments& a) {
+  std::vector<Option> options{
       {"GT",
        "Ground truth: a file, a sequence folder or preset, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD "
        "for a chain of transforms)",
@@ -305,19 +333,10 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"--json", "Print JSON with full precision", &a.json},
       {"--csv", "Print CSV", &a.csv},
       {"--markdown", "Print Markdown", &a.markdown},
-      {"--map", "Write a plan with scale and north arrow; GT may be NMEA sentences of a GNSS receiver",
-       &a.map},
-      {"--plot", "Write figures of trajectories and errors (.pdf, .svg, .png or .html)", &a.plot},
-      {"--figure",
-       "Figure of --plot: " + enum_list<report::FigureKind>() + " or all; may be repeated [path, error]",
-       &a.figures},
-      {"--label",
-       "Name of an estimate in tables and figures, in the order of EST; may be repeated [its file]",
-       &a.labels},
-      {"--width", "Width of figures: column (85 mm), page (180 mm), or a length such as 120mm", &a.width},
-      {"--font-size", "Size of the font in figures [pt]", &a.font_size_pt, {4, 24}},
       {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
       {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
+  for (Option& option : figure_options(a)) options.push_back(std::move(option));
+  return options;
 }
 
 }  // namespace
@@ -327,7 +346,9 @@ Command eval_command() {
   return {
       .name = "eval",
       .summary = "Evaluate trajectories against ground truth with named protocols",
-      .example = "eval groundtruth.txt trajectory.tum --protocol compat:tum --protocol strict:se3 --explain",
+      .example =
+          "eval groundtruth.txt trajectory.tum --protocol compat:tum --protocol strict:se3 --explain\n"
+          "  stillpoint eval groundtruth.txt trajectory.tum --plot path.pdf --figure path --plot-mode xyz",
       .options = options_of(*arguments),
       .action = [arguments] { return evaluate_files(*arguments); },
       .subcommands = {eval_openloris_command(), eval_cloud_command(), find_protocol_command()}};

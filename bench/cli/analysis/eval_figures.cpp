@@ -36,24 +36,58 @@ double width_mm(const std::string& text) {
   return *number;
 }
 
+/// @throws InputError naming the option if no value of the enum has this name
+template <typename Enum>
+Enum value_named(const std::string& name, const char* option, const char* other_values = "") {
+  for (const auto& [value, known] : enum_names(Enum{})) {
+    if (name == known) return value;
+  }
+  throw InputError(option, fmt::format("unknown value \"{}\"; expected one of: {}{}", name, enum_list<Enum>(),
+                                       other_values));
+}
+
 /// The kinds of --figure, "all" being all; without any, path and errors.
 std::vector<report::FigureKind> figure_kinds(const EvalArguments& arguments) {
   std::vector<report::FigureKind> kinds;
   for (const std::string& name : arguments.figures) {
     if (name == "all") {
       for (const auto& [kind, known] : enum_names(report::FigureKind{})) kinds.push_back(kind);
-      continue;
+    } else {
+      kinds.push_back(value_named<report::FigureKind>(name, "--figure", ", all"));
     }
-    const auto names = enum_names(report::FigureKind{});
-    const auto found = std::ranges::find(names, name, [](const auto& entry) { return entry.second; });
-    if (found == names.end()) {
-      throw InputError("--figure", fmt::format("unknown value \"{}\"; expected one of: {}, all", name,
-                                               enum_list<report::FigureKind>()));
-    }
-    kinds.push_back(found->first);
   }
   if (kinds.empty()) kinds = {report::FigureKind::kPath, report::FigureKind::kError};
   return kinds;
+}
+
+/// @throws InputError for an option of the path figure that is unknown or has nothing to change
+report::PathOptions path_options(const EvalArguments& arguments) {
+  report::PathOptions options{.least_error_m = arguments.colormap_min_m};
+  if (!arguments.plot_mode.empty())
+    options.mode = value_named<report::PlotMode>(arguments.plot_mode, "--plot-mode");
+  for (const std::string& mark : arguments.path_marks) {
+    if (mark != "axes" && mark != "correspondences") {
+      throw InputError("--path-mark",
+                       fmt::format("unknown value \"{}\"; expected one of: axes, correspondences", mark));
+    }
+    (mark == "axes" ? options.pose_axes : options.correspondences) = true;
+  }
+  if (arguments.colormap_max_m > 0.0) options.most_error_m = arguments.colormap_max_m;
+  const bool has_limits = options.most_error_m || options.least_error_m > 0.0;
+  if (has_limits && arguments.files.estimates.size() > 1) {
+    throw InputError(options.most_error_m ? "--colormap-max" : "--colormap-min",
+                     "only the path of a single estimate is colored by its error; give one EST");
+  }
+  const bool changes_path = options.mode || has_limits || !arguments.path_marks.empty();
+  const std::vector<report::FigureKind> kinds = figure_kinds(arguments);
+  const bool draws_path =
+      !arguments.map.empty() ||
+      (!arguments.plot.empty() && std::ranges::find(kinds, report::FigureKind::kPath) != kinds.end());
+  if (changes_path && !draws_path) {
+    throw InputError("--plot-mode, --path-mark, --colormap-min, --colormap-max",
+                     "change the path figure only; add --plot FILE.pdf --figure path");
+  }
+  return options;
 }
 
 /// A figure, or nullopt with a warning if it has no data and was not named.
@@ -76,6 +110,7 @@ void require_figures(const EvalArguments& arguments, const OutputRules& rules) {
                                             arguments.labels.size(), arguments.files.estimates.size()));
   }
   static_cast<void>(figure_kinds(arguments));
+  static_cast<void>(path_options(arguments));
   static_cast<void>(width_mm(arguments.width));
   if (!arguments.figures.empty() && arguments.plot.empty())
     throw InputError("--figure", "needs a file: --plot FILE.pdf");
@@ -90,6 +125,7 @@ void write_figures(const EvalArguments& arguments, const Trajectory& gt,
   for (const report::EvaluatedRun& run : runs)
     plotted.push_back({run.name, &run.est, &run.evaluations.front()});
   report::FigureInput input{.gt = gt, .runs = plotted, .offset_s = arguments.offset_s};
+  input.path = path_options(arguments);
   if (arguments.max_difference_s > 0.0) input.max_gap_s = arguments.max_difference_s;
   const report::FigureSize size{width_mm(arguments.width), arguments.font_size_pt};
   if (!arguments.plot.empty()) {

@@ -35,6 +35,10 @@ struct EvalArguments {
   std::string plot;
   std::string map;
   std::vector<std::string> figures;
+  std::string plot_mode;
+  std::vector<std::string> path_marks;
+  double colormap_min_m = 0.0;
+  double colormap_max_m = 0.0;
   std::vector<std::string> labels;
   std::string width = "column";
   double font_size_pt = report::theme::kFontSizePt;

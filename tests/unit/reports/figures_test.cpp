@@ -4,12 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include "eval/io/nmea_file.h"
 #include "reports/drawing/curves.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stillpoint::report {
 namespace {
@@ -159,6 +164,118 @@ TEST(PathFigure, ColorsASingleEstimateByItsError) {
   reds.erase(std::unique(reds.begin(), reds.end()), reds.end());
   EXPECT_GT(reds.size(), 10U);
   EXPECT_NE(svg_text(drawing).find(">position error [m]</text>"), std::string::npos);  // of the color bar
+}
+
+/// What begins a file of the format, and what is in it.
+struct FormatMark {
+  const char* extension;
+  const char* beginning;
+  const char* content;
+};
+
+TEST(Figures, AreDrawnInFourFormatsWithTheirFonts) {
+  const CircleRuns circles;
+  const TemporaryFolder folder;
+  for (const auto& [kind, name] : enum_names(FigureKind{})) {
+    const std::array<Drawing, 1> drawings{figure(kind, circles.both(), {})};
+    for (const FormatMark& format :
+         {FormatMark{"pdf", "%PDF-", "/FontFile"}, FormatMark{"svg", "<", "near</text>"},
+          FormatMark{"png", "\x89PNG", "IDAT"}, FormatMark{"html", "<!doctype html>", "near</text>"}}) {
+      const std::filesystem::path file = folder.path() / (std::string(name) + "." + format.extension);
+      write_drawings(file, drawings, 1.0, {});
+      std::ifstream stream(file, std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+      EXPECT_TRUE(bytes.starts_with(format.beginning)) << file;
+      EXPECT_NE(bytes.find(format.content), std::string::npos) << file;
+    }
+  }
+}
+
+TEST(PathFigure, HasTheAxesOfItsMode) {
+  const CircleRuns circles;
+  FigureInput input = circles.both();
+  const auto has = [&](const char* text) {
+    return svg_text(figure(FigureKind::kPath, input, {})).find(std::string(">") + text + "</text>") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(has("x [m]") && has("y [m]") && has("z [m]"));  // plan and side view
+  input.path.mode = PlotMode::kZy;
+  EXPECT_TRUE(!has("x [m]") && has("y [m]") && has("z [m]"));
+  // The circle is 4 m in y (up) and 0.2 m in z.
+  const std::vector<Polyline> truth =
+      lines_of(figure(FigureKind::kPath, input, {}), theme::kBlack, theme::kTruthWidth);
+  ASSERT_EQ(truth.size(), 1U);
+  const auto [left, right] = std::ranges::minmax(truth[0].points, {}, &Point2::x);
+  const auto [top, bottom] = std::ranges::minmax(truth[0].points, {}, &Point2::y);
+  EXPECT_NEAR((bottom.y - top.y) / (right.x - left.x), 20.0, 1.0);
+}
+
+// A circle of radius 2 m in the plane z = 0: the view turns x to (0.866, -0.25) and y to (0.5, 0.433), so
+// that its extent is 2 sqrt(0.75 + 0.25) to the right and 2 sqrt(0.0625 + 0.1875) upwards: half as high as
+// wide.
+TEST(PathFigure, ProjectsThreeDimensionsToScale) {
+  CircleRuns circles;
+  for (StampedPose& pose : circles.gt.poses) pose.T_w_f.p.z() = 0.0;
+  FigureInput input = circles.both();
+  input.path.mode = PlotMode::kXyz;
+  const Drawing drawing = figure(FigureKind::kPath, input, {});
+  const std::vector<Polyline> truth = lines_of(drawing, theme::kBlack, theme::kTruthWidth);
+  ASSERT_EQ(truth.size(), 1U);
+  const auto [left, right] = std::ranges::minmax(truth[0].points, {}, &Point2::x);
+  const auto [top, bottom] = std::ranges::minmax(truth[0].points, {}, &Point2::y);
+  EXPECT_NEAR((bottom.y - top.y) / (right.x - left.x), 0.5, 0.01);
+  for (const char* title : {">x [m]<", ">y [m]<", ">z [m]<"})
+    EXPECT_NE(svg_text(drawing).find(title), std::string::npos) << title;
+}
+
+TEST(PathFigure, HasALineOfEachColorForEachAxisOfAPose) {
+  const CircleRuns circles;
+  FigureInput input = circles.one();
+  const auto count = [&](const Color& color) {
+    const Drawing drawing = figure(FigureKind::kPath, input, {});
+    return std::ranges::count_if(drawing.marks, [&](const Mark& mark) {
+      const auto* const line = std::get_if<Polyline>(&mark);
+      return line != nullptr && line->color.red == color.red && line->color.blue == color.blue;
+    });
+  };
+  input.path.mode = PlotMode::kXy;
+  for (const Color& color : theme::kPoseAxes) EXPECT_EQ(count(color), 0);
+  input.path.pose_axes = true;
+  // Every 10th of 201 poses (21), every 8th of 163 (21).
+  for (const Color& color : theme::kPoseAxes) EXPECT_EQ(count(color), 42);
+}
+
+TEST(PathFigure, ConnectsPosesWithTheGroundTruth) {
+  const CircleRuns circles;
+  FigureInput input = circles.both();
+  const auto lines = [&] {
+    const Drawing drawing = figure(FigureKind::kPath, input, {});
+    return std::ranges::count_if(drawing.marks, [](const Mark& mark) {
+      const auto* const line = std::get_if<Polyline>(&mark);
+      return line != nullptr && line->width == theme::kGridWidth && line->color.red == theme::kFrame.red;
+    });
+  };
+  EXPECT_EQ(lines(), 0);
+  input.path.correspondences = true;
+  EXPECT_GT(lines(), 100);  // of two estimates in two views
+}
+
+TEST(PathFigure, HasTheLimitsOfItsColorBar) {
+  const CircleRuns circles;
+  FigureInput input = circles.one();
+  input.path.least_error_m = 0.01;
+  input.path.most_error_m = 0.03;
+  EXPECT_NE(svg_text(figure(FigureKind::kPath, input, {})).find(">0.030</text>"), std::string::npos);
+  input.path.most_error_m = 0.01;
+  expect_input_error([&] { static_cast<void>(figure(FigureKind::kPath, input, {})); }, {"--colormap-min"});
+}
+
+TEST(Figures, ExplainTheirBoxesInWholeLines) {
+  const CircleRuns circles;
+  const std::string svg = svg_text(figure(FigureKind::kBox, circles.both(), {}));
+  EXPECT_NE(svg.find("Violins: density"), std::string::npos);
+  EXPECT_NE(svg.find("RMSE.</text>"), std::string::npos);  // the last word is there
+  EXPECT_EQ(svg.find("\u2026"), std::string::npos);
 }
 
 TEST(Figures, HaveTheWidthAndTheFontThatAreAskedFor) {
