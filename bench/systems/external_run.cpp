@@ -4,13 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/model/json_problem.h"
+#include "bench/model/scale_fit.h"
 #include "bench/record/result_values.h"
 #include "bench/record/run_environment.h"
 #include "bench/run/run_result.h"
@@ -23,7 +23,6 @@
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/trajectory/alignment.h"
-#include "eval/trajectory/association.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -176,7 +175,8 @@ RunOutcome failed(Outcome outcome, const std::string& detail) {
   return result;
 }
 
-/// One per frame: located where the system has a pose, lost after its first one where it has none.
+}  // namespace
+
 std::vector<eval::ClaimedPose> claims_of(const Trajectory& trajectory, std::span<const Timestamp> frames) {
   constexpr double kSameStamp_s = 1e-3;  // > rounding of stamps in files with 6 decimals
   std::vector<eval::ClaimedPose> claims;
@@ -194,18 +194,6 @@ std::vector<eval::ClaimedPose> claims_of(const Trajectory& trajectory, std::span
   }
   return claims;
 }
-
-/// Scale of the positions by Sim(3) alignment with the ground truth; 1 without one.
-double fitted_scale(const datasets::SequenceInfo& info, const Trajectory& estimate) {
-  const Trajectory gt =
-      eval::move_to_frame(info.ground_truth.trajectory, info.ground_truth.T_c_f.inverse(), "camera");
-  const std::vector<eval::MatchedPose> matches =
-      eval::matched_poses(gt, estimate, eval::associate_tum(gt, estimate));
-  const double scale = eval::align(matches, eval::Alignment::kSim3).S_w_v.scale;
-  return matches.empty() || !(scale > 0.0) || !std::isfinite(scale) ? 1.0 : scale;
-}
-
-}  // namespace
 
 std::unique_ptr<datasets::SensorStream> played_sequence(const RunRequest& request) {
   return datasets::with_faults(started(request), faults_of(request));
@@ -266,14 +254,13 @@ ProcessSpec ExternalRun::command(const RunRequest& request) const {
 
 namespace {
 
-/// Multiplies the positions of a system without scale. @return what the protocols of its metrics state
-std::string fit_scale(SystemTrajectory& output, const datasets::SequenceInfo& info) {
-  const double scale = fitted_scale(info, output.trajectory);
-  for (StampedPose& pose : output.trajectory.poses) pose.T_w_f.p *= scale;
+/// Multiplies the positions of a system without scale.
+void apply_scale(SystemTrajectory& output, const datasets::SequenceInfo& info) {
+  const double scale = fit_scale(
+      output.trajectory,
+      eval::move_to_frame(info.ground_truth.trajectory, info.ground_truth.T_c_f.inverse(), "camera"));
   output.text = eval::format_tum(output.trajectory);
-  std::string suffix = ", scale fitted to the ground truth";
-  output.log += fmt::format("positions multiplied by {:.6g}{}\n", scale, suffix);
-  return suffix;
+  output.log += fmt::format("positions multiplied by {:.6g}{}\n", scale, kScaleFitted);
 }
 
 RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
@@ -287,7 +274,7 @@ RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
     return result;
   }
   const bool is_scaled = system.scale == PositionScale::kUnknown;
-  const std::string suffix = is_scaled ? fit_scale(output, info) : "";
+  if (is_scaled) apply_scale(output, info);
   if (!output.log.empty()) result.attachments["log"] = output.log;
   OdometryRun run;
   run.summary.frames = info.frame_times.size();
@@ -297,9 +284,7 @@ RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
   run.trajectory = std::move(output.trajectory);
   const RunResult score = score_run(info, std::move(run), faults_of(request));
   result.metrics = measured_metrics({.scored = measurements_of(score).scored, .honesty = score.honesty});
-  for (Metric& metric : result.metrics) {
-    if (!metric.protocol.empty()) metric.protocol += suffix;
-  }
+  if (is_scaled) state_fitted_scale(result.metrics);
   result.attachments["trajectory"] = std::move(output.text);
   if (!system.timings.empty()) result.costs = module_costs(timings_of(request.work / system.timings));
   return result;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -36,6 +37,12 @@ struct SystemTrajectory {
 /// @throws InputError if the file is malformed
 [[nodiscard]] SystemTrajectory read_output(const ExternalSystem& system, const std::filesystem::path& work,
                                            const datasets::SequenceInfo& info);
+
+/// What a trajectory tells about the frames: those at the stamp of a pose (within 1 ms) are located, those
+/// after the first of them without a pose are lost.
+/// @param frames times in ascending order
+[[nodiscard]] std::vector<eval::ClaimedPose> claims_of(const Trajectory& trajectory,
+                                                       std::span<const Timestamp> frames);
 
 /// Runs an external system on a sequence.
 class ExternalRun : public SlamSystem {

@@ -50,7 +50,16 @@ SensorYaml::SensorYaml(const std::filesystem::path& file) : file_(file.string())
   } catch (const YAML::Exception& error) {
     throw InputError(file_, error.mark.line + 1, "is not valid YAML (" + error.msg + ")");
   }
-  if (!node_.IsMap()) throw InputError(file_, "contains no calibration values; copy the file again");
+  if (!node_.IsMap()) throw InputError(file_, "contains no map of values; copy the file again");
+}
+
+std::vector<std::string> SensorYaml::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& entry : node_) {
+    if (!entry.first.IsScalar()) throw InputError(file_, prefix_ + ": has a key that is no text");
+    keys.push_back(entry.first.Scalar());
+  }
+  return keys;
 }
 
 bool SensorYaml::has(const std::string& key) const { return static_cast<bool>(node_[key]); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Calibration files in the YAML dialect of OpenCV and EuRoC.
+/// Calibration files in the YAML dialect of OpenCV and EuRoC, and other YAML files that consist of a map.
 #pragma once
 
 #include <filesystem>
@@ -43,6 +43,7 @@ class SensorYaml {
   [[nodiscard]] ImuNoise imu_noise() const;
 
   [[nodiscard]] bool has(const std::string& key) const;
+  [[nodiscard]] std::vector<std::string> keys() const;  ///< in the order of the file
   [[noreturn]] void fail(const std::string& key, const std::string& problem) const;
 
  private:

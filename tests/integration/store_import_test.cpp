@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results of evo as runs of a store.
+// Results of other tools as runs of a store. All their files are made up from the documentation.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "eval/io/text_reader.h"
 #include "tests/support/program.h"
@@ -124,6 +133,153 @@ TEST(StoreImport, AContradictingOrUnknownResultOfEvoIsAnError) {
                               {.environment = {"TMPDIR=" + (folder.path() / "tmp").string()}}),
                   {"damaged.zip"});
   EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "tmp"));
+}
+
+/// How the rows of a made-up trajectory are written.
+struct RowStyle {
+  std::string header;
+  bool nanoseconds = false;
+  std::string_view separator = " ";
+};
+
+/// A spiral over 3 s.
+/// @param scale of the positions
+/// @param wobble_m added to every second position, upwards
+std::string spiral(const RowStyle& style, double scale = 1.0, double wobble_m = 0.0) {
+  std::string text = style.header;
+  for (int i = 0; i < 31; ++i) {
+    const double t = 0.1 * i, z = 0.1 * t + (i % 2) * wobble_m;
+    const std::string stamp = style.nanoseconds
+                                  ? fmt::format("{}", 1'700'000'000'000'000'000 + i * 100'000'000LL)
+                                  : fmt::format("{:.6f}", 1.7e9 + t);
+    text += fmt::format("{1}{0}{2:.6f}{0}{3:.6f}{0}{4:.6f}{0}0{0}0{0}0{0}1\n", style.separator, stamp,
+                        scale * std::cos(t), scale * std::sin(t), scale * z);
+  }
+  return text;
+}
+
+const RowStyle kOvEval{.header = "# timestamp(s) tx ty tz qx qy qz qw\n"};
+const RowStyle kEvalio{.header =
+                           "# name: kiss\n# pipeline: kiss\n# voxel_size: 0.5\n#\n"
+                           "# timestamp, x, y, z, qx, qy, qz, qw\n",
+                       .separator = ", "};
+const RowStyle kVslamLab{
+    .header = "ts (ns),tx (m),ty (m),tz (m),qx,qy,qz,qw\n", .nanoseconds = true, .separator = ","};
+
+/// Result folders, a store, and the import into it.
+class ResultImport {
+ public:
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  void write(const std::string& name, const std::string& text) const {
+    const std::filesystem::path file = folder_.path() / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+  [[nodiscard]] ProgramResult import(const std::string& name,
+                                     const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments = {"store", "import", path(name), "--store", path("s.sqlite")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_program(arguments);
+  }
+  [[nodiscard]] std::string tidy() const {
+    EXPECT_EQ(
+        run_program({"store", "export", path("t.csv"), "--tidy", "--force", "--store", path("s.sqlite")})
+            .exit_code,
+        0);
+    return eval::read_text_file(path("t.csv"));
+  }
+  /// Value of the ATE of the run whose row contains the words; NaN without one.
+  [[nodiscard]] double ate_m(const std::string& words) const {
+    std::istringstream rows(tidy());
+    for (std::string row; std::getline(rows, row);) {
+      const std::size_t metric = row.find("ate_rmse_m");
+      if (metric == std::string::npos || row.find(words) == std::string::npos) continue;
+      std::istringstream fields(row.substr(metric));
+      std::string field;
+      while (std::getline(fields, field, ',')) {
+        char* end = nullptr;
+        const double value = std::strtod(field.c_str(), &end);
+        if (!field.empty() && *end == '\0') return value;
+      }
+    }
+    return std::nan("");
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST(StoreImport, AFolderOfOvEvalIsScored) {
+  const ResultImport results;
+  results.write("ov/truth/room.txt", spiral(kOvEval));
+  results.write("ov/algorithms/vins/room/run1.txt", spiral(kOvEval, 1.0, 0.02));
+  results.write("ov/algorithms/vins/room/run2.txt", spiral(kOvEval));
+  results.write("ov/algorithms/okvis/room/run1.txt", "# timestamp(s) tx ty tz qx qy qz qw\n");
+  const ProgramResult first = results.import("ov");
+  EXPECT_EQ(first.out, "3 runs added, 0 already present\n") << first.err;
+  EXPECT_EQ(results.import("ov").out, "0 runs added, 3 already present\n");
+  EXPECT_NEAR(results.ate_m(",vins,vins,room,"), 0.01, 1e-3) << results.tidy();
+  const ProgramResult list = run_program({"store", "list", results.path("s.sqlite")});
+  EXPECT_NE(list.out.find("wrote a trajectory without poses"), std::string::npos) << list.out;
+
+  results.write("ov/algorithms/vins/room/run1.txt", spiral(kOvEval, 1.0, 0.04));
+  expect_rejected(results.import("ov"), {"another ate_rmse_m of vins on room", "another --store"});
+  expect_rejected(results.import("ov", {"--system", "x"}), {"--system", "no effect"});
+}
+
+TEST(StoreImport, AFolderOfEvalioIsScored) {
+  const ResultImport results;
+  results.write("results/hall/day_1/gt.csv", spiral(kEvalio));
+  results.write("results/hall/day_1/kiss.csv", spiral(kEvalio, 1.0, 0.02));
+  results.write("results/hall/day_1/kiss__voxel_size-0.1.csv", spiral(kEvalio, 1.0, 0.06));
+  const ProgramResult first = results.import("results");
+  EXPECT_EQ(first.out, "2 runs added, 0 already present\n") << first.err;
+  EXPECT_NEAR(results.ate_m(",kiss,kiss,hall/day_1,"), 0.01, 1e-3) << results.tidy();
+  EXPECT_NEAR(results.ate_m(",kiss,kiss__voxel_size-0.1,hall/day_1,"), 0.03, 1e-3) << results.tidy();
+}
+
+TEST(StoreImport, AnExperimentOfVslamLabHasItsFailedRunsAndNoScale) {
+  const ResultImport results;
+  results.write("exp.yaml",
+                "walk:\n  Config: config.yaml\n  NumRuns: 2\n  Parameters: {verbose: 1, mode: mono}\n"
+                "  Module: orbslam2\n");
+  results.write("config.yaml", "rgbdtum:\n  - 'desk'\n");
+  results.write("evaluation/walk/RGBDTUM/desk/00000_KeyFrameTrajectory.csv", spiral(kVslamLab, 0.4, 0.02));
+  results.write("evaluation/walk/RGBDTUM/desk/00000_KeyFrameTrajectory_beforeGBA.csv", "broken");
+  results.write("evaluation/walk/vslamlab_exp_log.csv", "");
+  results.write("benchmark/RGBDTUM/desk/groundtruth.csv", spiral(kVslamLab));
+  const std::vector<std::string> options = {"--results", results.path("evaluation"), "--truth",
+                                            results.path("benchmark")};
+  const ProgramResult first = results.import("exp.yaml", options);
+  EXPECT_EQ(first.out, "2 runs added, 0 already present\n") << first.err;
+  EXPECT_NEAR(results.ate_m(",orbslam2,walk,desk,"), 0.01, 1e-3) << results.tidy();
+  const ProgramResult list = run_program({"store", "list", results.path("s.sqlite")});
+  EXPECT_NE(list.out.find("wrote no trajectory"), std::string::npos) << list.out;
+
+  const ProgramResult folder =
+      results.import("evaluation/walk", {"--truth", results.path("benchmark"), "--system", "orb"});
+  EXPECT_EQ(folder.out, "1 runs added, 0 already present\n") << folder.err;
+  EXPECT_GT(results.ate_m(",orb,walk,desk,"), 0.3) << "nothing tells that it has no scale";
+  expect_rejected(results.import("exp.yaml"), {"--results"});
+  expect_rejected(results.import("evaluation/walk"), {"--truth"});
+  results.write("exp.yaml", "walk:\n  Config: config.yaml\n  NumRuns: 2\n");
+  expect_rejected(results.import("exp.yaml", options), {"exp.yaml", "walk.Module", "missing"});
+  results.write("exp.yaml", "just a text");
+  expect_rejected(results.import("exp.yaml", options), {"exp.yaml"});
+}
+
+TEST(StoreImport, ABrokenResultFolderAddsNothing) {
+  const ResultImport results;
+  std::filesystem::create_directories(results.path("empty"));
+  expect_rejected(results.import("empty"), {"no trajectories in the layout of ov_eval"});
+  results.write("ov/algorithms/vins/room/run1.txt", spiral(kOvEval));
+  expect_rejected(results.import("ov"), {"room.txt", "does not exist", "--truth"});
+  results.write("ov/truth/room.txt", spiral(kOvEval));
+  results.write("ov/algorithms/vins/room/run2.txt", "1.7 0 0 zero 0 0 0 1\n");
+  expect_rejected(results.import("ov"), {"run2.txt:1"});
+  results.write("ov/algorithms/vins/room/run2.txt", "3.5 0 0 0 0 0 0 1\n3.6 0 0 0 0 0 0 1\n");
+  expect_rejected(results.import("ov"), {"run2.txt", "no pose at the time"});
+  EXPECT_FALSE(std::filesystem::exists(results.path("s.sqlite")));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "bench/analysis/commit_history.h"
 #include "bench/cli/analysis/import/evo_import.h"
+#include "bench/cli/analysis/import/result_folders.h"
 #include "bench/cli/command_line.h"
 #include "bench/config/spelling.h"
 #include "bench/model/metrics.h"
@@ -160,7 +161,8 @@ struct StoreArguments {
   std::string run;
   std::string file;
   std::vector<std::string> equal;
-  EvoNames evo;
+  EvoNames names;
+  std::string results, truth;
   bool mcap = false;
   bool numbers = false;
   bool tidy = false;
@@ -331,14 +333,30 @@ int export_to(const StoreArguments& arguments) {
   return kExitOk;
 }
 
+/// @throws InputError if one of the options is set, each a name and its value
+void require_unset(const std::vector<std::pair<std::string, std::string>>& options, const std::string& file) {
+  for (const auto& [name, value] : options) {
+    if (!value.empty()) throw InputError(name, "has no effect on " + file + "; omit it");
+  }
+}
+
 int import_from(const StoreArguments& arguments) {
-  if (is_zip_file(arguments.file)) {
-    print_merge(import_evo(arguments.file, arguments.store, arguments.evo));
+  const EvoNames& names = arguments.names;
+  if (is_result_source(arguments.file)) {
+    require_unset({{"--sequence", names.sequence}}, arguments.file);
+    print_merge(import_results({.path = arguments.file,
+                                .results = arguments.results,
+                                .truth = arguments.truth,
+                                .system = names.system},
+                               arguments.store));
     return kExitOk;
   }
-  if (!arguments.evo.system.empty() || !arguments.evo.sequence.empty())
-    throw InputError(arguments.file,
-                     "is no result of evo (.zip): its runs have names; omit --system and --sequence");
+  require_unset({{"--results", arguments.results}, {"--truth", arguments.truth}}, arguments.file);
+  if (is_zip_file(arguments.file)) {
+    print_merge(import_evo(arguments.file, arguments.store, names));
+    return kExitOk;
+  }
+  require_unset({{"--system", names.system}, {"--sequence", names.sequence}}, arguments.file);
   print_merge(import_store(eval::read_text_file(arguments.file), arguments.file, arguments.store));
   return kExitOk;
 }
@@ -424,11 +442,18 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
                        arguments, export_to),
       store_subcommand(
           {.name = "import",
-           .summary = "Add the runs of an exported JSON file, or a result of evo (.zip)",
+           .summary = "Add the runs of an exported JSON file, a result of evo (.zip), a result folder of "
+                      "ov_eval, evalio or VSLAM-LAB, or an experiment file of VSLAM-LAB",
            .example = "store import runs.json",
-           .options = {{"FILE", "Input file", &arguments->file},
-                       {"--system", "Name of evo's estimate [of its path]", &arguments->evo.system},
-                       {"--sequence", "Name of evo's reference [of its path]", &arguments->evo.sequence}}},
+           .options = {{"FILE", "Input file or folder", &arguments->file},
+                       {"--system",
+                        "Name of evo's estimate, or of the system of a folder of VSLAM-LAB "
+                        "[of its path]",
+                        &arguments->names.system},
+                       {"--sequence", "Name of evo's reference [of its path]", &arguments->names.sequence},
+                       {"--results", "Evaluation folder of VSLAM-LAB, for an experiment file",
+                        &arguments->results},
+                       {"--truth", "Folder of the ground truths [that of the layout]", &arguments->truth}}},
           arguments, import_from),
       salvage_command(arguments)};
 }

@@ -15,11 +15,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/analysis/import/imported_runs.h"
 #include "bench/model/json_problem.h"
 #include "bench/model/metrics.h"
 #include "bench/process/temporary_path.h"
-#include "bench/store/store.h"
-#include "bench/store/store_writer.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 #include "datasets/download/archive_extraction.h"
@@ -139,29 +138,6 @@ void require_rmse(double rmse, const std::vector<double>& errors, const std::str
                          rmse, errors.size(), expected));
 }
 
-/// Whether the store has this result.
-/// @throws InputError if it has another one of the same metric, system and sequence
-bool is_present(const fs::path& store, const RunIdentity& identity, const Metric& metric) {
-  if (!fs::exists(store)) return false;
-  const Store stored(store);
-  std::vector<StoredRun> runs = stored.run_headers();
-  std::erase_if(runs, [&](const StoredRun& run) {
-    return run.identity.system != identity.system || run.identity.sequence_id != identity.sequence_id;
-  });
-  for (const StoredRun& run : stored.with_details(std::move(runs))) {
-    const auto known = std::ranges::find(run.metrics, metric.name, &Metric::name);
-    if (known == run.metrics.end()) continue;
-    if (known->protocol == metric.protocol && known->value == metric.value) return true;
-    throw InputError(
-        store.string(),
-        fmt::format("has another {} of {} on {}: {:g} by \"{}\", not {:g} by \"{}\"; pass another "
-                    "--store, or another name by --system",
-                    metric.name, identity.system, identity.sequence, known->value, known->protocol,
-                    metric.value, metric.protocol));
-  }
-  return false;
-}
-
 }  // namespace
 
 bool is_zip_file(const fs::path& file) {
@@ -187,19 +163,13 @@ MergeReport import_evo(const fs::path& file, const fs::path& store, const EvoNam
                         .unit = std::string(find_metric(id)->unit),
                         .value = rmse};
     const EvoNames names = names_of(info, given, place);
-    const RunIdentity identity{.system = names.system,
-                               .variant = names.system,
-                               .sequence = names.sequence,
-                               .sequence_id = "evo-" + hash_text(content_hash(names.sequence)),
-                               .config_hash = hash_text(content_hash(label + "\n" + title)),
-                               .build = "imported",
-                               .mode = "external"};
-    if (is_present(store, identity, metric)) return {.added = 0, .present = 1};
-    StoreWriter writer(store);
-    if (writer.acquire(identity) != RunLease::kGranted)
-      throw InputError(store.string(), "is written by another process; try again");
-    writer.finish(identity, {.metrics = {metric}});
-    return {.added = 1, .present = 0};
+    RunIdentity identity = imported_identity();
+    identity.system = names.system;
+    identity.variant = names.system;
+    identity.sequence = names.sequence;
+    identity.sequence_id = "evo-" + hash_text(content_hash(names.sequence));
+    identity.config_hash = hash_text(content_hash(label + "\n" + title));
+    return add_imported(store, {{std::move(identity), {.metrics = {metric}}}});
   } catch (const Json::exception& error) {
     throw InputError(place, "is no result of evo: " + json_problem(error));
   }

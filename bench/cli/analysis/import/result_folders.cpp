@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/analysis/import/result_folders.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/cli/analysis/import/imported_runs.h"
+#include "bench/model/metrics.h"
+#include "bench/model/scale_fit.h"
+#include "core/base/content_hash.h"
+#include "core/base/error.h"
+#include "datasets/io/experiment_file.h"
+#include "eval/io/text_reader.h"
+#include "eval/io/trajectory_file.h"
+#include "eval/score.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A trajectory of a result folder.
+struct ResultFile {
+  std::string system, variant, sequence;
+  std::int64_t repetition = 1;
+  fs::path estimate;  ///< a file that does not exist is a failed run
+  fs::path truth;
+  bool has_scale = true;
+};
+
+constexpr std::string_view kKeyframes = "_KeyFrameTrajectory.csv";
+
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is no folder");
+  std::vector<fs::path> entries;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
+  std::ranges::sort(entries);
+  return entries;
+}
+
+std::vector<fs::path> folders_in(const fs::path& folder) {
+  std::vector<fs::path> folders = sorted_entries(folder);
+  std::erase_if(folders, [](const fs::path& path) { return !fs::is_directory(path); });
+  return folders;
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, std::string_view ending) {
+  std::vector<fs::path> files = sorted_entries(folder);
+  std::erase_if(files, [&](const fs::path& path) {
+    return !path.filename().string().ends_with(ending) || !fs::is_regular_file(path);
+  });
+  return files;
+}
+
+std::vector<ResultFile> ov_eval_files(const ResultSource& source) {
+  const fs::path beside = source.path / (fs::exists(source.path / "truths") ? "truths" : "truth");
+  const fs::path truths = source.truth.empty() ? beside : source.truth;
+  std::vector<ResultFile> files;
+  for (const fs::path& system : folders_in(source.path / "algorithms")) {
+    for (const fs::path& sequence : folders_in(system)) {
+      std::int64_t repetition = 0;
+      for (const fs::path& run : files_in(sequence, ".txt"))
+        files.push_back({.system = system.filename().string(),
+                         .variant = system.filename().string(),
+                         .sequence = sequence.filename().string(),
+                         .repetition = ++repetition,
+                         .estimate = run,
+                         .truth = truths / (sequence.filename().string() + ".txt")});
+    }
+  }
+  return files;
+}
+
+std::vector<ResultFile> evalio_files(const ResultSource& source) {
+  std::vector<ResultFile> files;
+  for (const fs::path& dataset : folders_in(source.path)) {
+    for (const fs::path& sequence : folders_in(dataset)) {
+      const fs::path name = dataset.filename() / sequence.filename();
+      for (const fs::path& run : files_in(sequence, ".csv")) {
+        const std::string pipeline = run.stem().string();
+        if (pipeline == "gt") continue;
+        files.push_back({.system = pipeline.substr(0, pipeline.find("__")),
+                         .variant = pipeline,
+                         .sequence = name.string(),
+                         .estimate = run,
+                         .truth = (source.truth.empty() ? source.path : source.truth) / name / "gt.csv"});
+      }
+    }
+  }
+  return files;
+}
+
+/// The folder in `parent` that is named like a dataset, without regard to case and signs between the words.
+fs::path dataset_folder(const fs::path& parent, const std::string& dataset) {
+  const auto plain = [](const std::string& name) {
+    std::string letters;
+    for (const unsigned char letter : name) {
+      if (std::isalnum(letter) != 0) letters += static_cast<char>(std::tolower(letter));
+    }
+    return letters;
+  };
+  if (fs::is_directory(parent)) {
+    for (const fs::path& folder : folders_in(parent)) {
+      if (plain(folder.filename().string()) == plain(dataset)) return folder;
+    }
+  }
+  return parent / dataset;
+}
+
+const fs::path& required_truth(const ResultSource& source) {
+  if (source.truth.empty())
+    throw InputError(source.path.string(),
+                     "is of VSLAM-LAB, whose ground truths are elsewhere; pass --truth FOLDER, its "
+                     "benchmark folder");
+  return source.truth;
+}
+
+/// Of the folder of one experiment, without its file.
+std::vector<ResultFile> vslam_lab_files(const ResultSource& source) {
+  const std::string name = fs::absolute(source.path / "").parent_path().filename().string();
+  std::vector<ResultFile> files;
+  for (const fs::path& dataset : folders_in(source.path)) {
+    const fs::path truths = dataset_folder(required_truth(source), dataset.filename().string());
+    for (const fs::path& sequence : folders_in(dataset)) {
+      std::int64_t repetition = 0;
+      for (const fs::path& run : files_in(sequence, kKeyframes))
+        files.push_back({.system = source.system.empty() ? name : source.system,
+                         .variant = name,
+                         .sequence = sequence.filename().string(),
+                         .repetition = ++repetition,
+                         .estimate = run,
+                         .truth = truths / sequence.filename() / "groundtruth.csv"});
+    }
+  }
+  return files;
+}
+
+std::vector<ResultFile> experiment_files(const ResultSource& source) {
+  if (!fs::is_directory(source.results))
+    throw InputError(source.path.string(),
+                     "is an experiment file; pass --results FOLDER, the evaluation folder of VSLAM-LAB");
+  std::vector<ResultFile> files;
+  for (const datasets::Experiment& experiment : datasets::read_experiments(source.path)) {
+    for (const datasets::ExperimentSequence& entry : experiment.sequences) {
+      const fs::path runs = dataset_folder(source.results / experiment.name, entry.dataset) / entry.sequence;
+      const fs::path truth = dataset_folder(required_truth(source), entry.dataset) / entry.sequence;
+      for (int run = 0; run < experiment.runs; ++run)
+        files.push_back({.system = experiment.system,
+                         .variant = experiment.name,
+                         .sequence = entry.sequence,
+                         .repetition = run + 1,
+                         .estimate = runs / fmt::format("{:05}{}", run, kKeyframes),
+                         .truth = truth / "groundtruth.csv",
+                         .has_scale = experiment.mode != "mono"});
+    }
+  }
+  return files;
+}
+
+std::vector<ResultFile> files_of(const ResultSource& source) {
+  const bool is_file = !fs::is_directory(source.path);
+  const bool is_vslam_lab = !is_file && fs::exists(source.path / "vslamlab_exp_log.csv");
+  if (!source.system.empty() && !is_vslam_lab)
+    throw InputError("--system", "has no effect: the systems are named by " + source.path.string());
+  if (!source.results.empty() && !is_file)
+    throw InputError("--results", "has no effect without an experiment file");
+  if (is_file) return experiment_files(source);
+  if (fs::is_directory(source.path / "algorithms")) return ov_eval_files(source);
+  return is_vslam_lab ? vslam_lab_files(source) : evalio_files(source);
+}
+
+/// Whether a line begins with a number: without one, a system wrote no pose.
+bool has_rows(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first != std::string::npos && std::isdigit(static_cast<unsigned char>(line[first])) != 0) return true;
+  }
+  return false;
+}
+
+/// The ground truths of sequences, each read once.
+class GroundTruths {
+ public:
+  struct Truth {
+    Trajectory trajectory;
+    std::string id;  ///< hash of the file
+  };
+
+  /// @throws InputError if it does not exist or is malformed
+  const Truth& of(const ResultFile& file) {
+    const auto known = truths_.find(file.truth);
+    if (known != truths_.end()) return known->second;
+    if (!fs::exists(file.truth))
+      throw InputError(file.truth.string(),
+                       "does not exist; it is the ground truth of " + file.sequence + ", see --truth");
+    return truths_[file.truth] = {.trajectory = eval::read_trajectory({.path = file.truth}).trajectory,
+                                  .id = "truth-" + hash_text(content_hash(eval::read_text_file(file.truth)))};
+  }
+
+ private:
+  std::map<fs::path, Truth> truths_;
+};
+
+/// @throws InputError for a malformed file, or without a pose at the time of one of the ground truth
+RunOutcome scored(const ResultFile& file, const Trajectory& truth) {
+  if (!fs::exists(file.estimate)) return {.outcome = Outcome::kLost, .detail = "wrote no trajectory"};
+  if (!has_rows(eval::read_text_file(file.estimate)))
+    return {.outcome = Outcome::kLost, .detail = "wrote a trajectory without poses"};
+  Trajectory estimate = eval::read_trajectory({.path = file.estimate}).trajectory;
+  if (!file.has_scale) fit_scale(estimate, truth);
+  const eval::Score score = eval::score(truth, estimate);
+  if (!score.ate)
+    throw InputError(file.estimate.string(),
+                     "has no pose at the time of one of " + file.truth.string() + ", its ground truth");
+  RunOutcome outcome;
+  outcome.metrics =
+      measured_metrics({.scored = ScoredTrajectory{.gt = truth, .est = estimate, .score = score}});
+  if (!file.has_scale) state_fitted_scale(outcome.metrics);
+  outcome.attachments = {{"trajectory", eval::format_tum(estimate)}, {"truth", eval::format_tum(truth)}};
+  return outcome;
+}
+
+}  // namespace
+
+bool is_result_source(const fs::path& path) {
+  return fs::is_directory(path) || path.extension() == ".yaml" || path.extension() == ".yml";
+}
+
+MergeReport import_results(const ResultSource& source, const fs::path& store) {
+  GroundTruths truths;
+  std::vector<ImportedRun> runs;
+  for (const ResultFile& file : files_of(source)) {
+    const GroundTruths::Truth& truth = truths.of(file);
+    RunIdentity identity = imported_identity();
+    identity.system = file.system;
+    identity.variant = file.variant;
+    identity.sequence = file.sequence;
+    identity.sequence_id = truth.id;
+    identity.config_hash = hash_text(content_hash(file.variant));
+    identity.repetition = file.repetition;
+    runs.push_back({std::move(identity), scored(file, truth.trajectory)});
+  }
+  if (runs.empty())
+    throw InputError(source.path.string(),
+                     "has no trajectories in the layout of ov_eval (algorithms/SYSTEM/SEQUENCE/RUN.txt), "
+                     "evalio (DATASET/SEQUENCE/PIPELINE.csv) or VSLAM-LAB "
+                     "(DATASET/SEQUENCE/00000_KeyFrameTrajectory.csv and vslamlab_exp_log.csv)");
+  return add_imported(store, runs);
+}
+
+}  // namespace stillpoint::bench
