@@ -150,7 +150,7 @@ row bench/cli/stats $execution eval/metrics bench/store bench/systems bench/plan
 row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
 
 # The minimal build: its commands, and the functions that it does not have.
-row bench/minimal core/base bench/config bench/cli bench/plan bench/run datasets datasets/synthetic/sequence reports/drawing \
+row bench/minimal core/base bench/config bench/cli bench/plan bench/run bench/systems datasets datasets/synthetic/sequence reports/drawing \
   reports/frames
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides

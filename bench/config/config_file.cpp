@@ -195,21 +195,22 @@ std::string config_text(const OdometryConfig& config) {
 std::vector<DifferentKey> different_keys(const OdometryConfig& a, const OdometryConfig& b) {
   OdometryConfig copy_a = a;
   OdometryConfig copy_b = b;
-  const std::vector<ConfigField> fields_a = fields_of(copy_a);
-  const std::vector<ConfigField> fields_b = fields_of(copy_b);
+  return different_keys(fields_of(copy_a), fields_of(copy_b));
+}
+
+std::vector<DifferentKey> different_keys(std::span<const ConfigField> a, std::span<const ConfigField> b) {
   std::vector<DifferentKey> keys;
-  for (std::size_t i = 0; i < fields_a.size(); ++i) {
-    const std::string value_a = std::visit(TomlValue{}, fields_a[i].member);
-    const std::string value_b = std::visit(TomlValue{}, fields_b[i].member);
-    if (value_a != value_b)
-      keys.push_back({fields_a[i].key, value_a, value_b, std::string(fields_a[i].info.unit)});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::string value_a = std::visit(TomlValue{}, a[i].member);
+    const std::string value_b = std::visit(TomlValue{}, b[i].member);
+    if (value_a != value_b) keys.push_back({a[i].key, value_a, value_b, std::string(a[i].info.unit)});
   }
   return keys;
 }
 
-std::string difference_text(const OdometryConfig& a, const OdometryConfig& b) {
+std::string difference_text(std::span<const DifferentKey> keys) {
   std::string text;
-  for (const auto& [key, value_a, value_b, unit] : different_keys(a, b))
+  for (const auto& [key, value_a, value_b, unit] : keys)
     text += fmt::format("{} = {} -> {}{}{}\n", key, value_a, value_b, unit.empty() ? "" : " ", unit);
   return text;
 }

@@ -52,9 +52,6 @@ struct ConfigEntry {
 [[nodiscard]] std::vector<ConfigEntry> config_difference(const OdometryConfig& parent,
                                                          const OdometryConfig& changed);
 
-/// The keys whose values differ, one per line: `KEY = A -> B UNIT`. Empty if all are equal.
-[[nodiscard]] std::string difference_text(const OdometryConfig& a, const OdometryConfig& b);
-
 /// Reference page of all keys: a Markdown table of key, meaning, type or choices, range with unit, default
 /// and section of the paper.
 [[nodiscard]] std::string config_reference();

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bench/config/settings.h"
 #include "core/config/odometry_config.h"
 
 namespace stillpoint::bench {
@@ -17,6 +19,13 @@ struct DifferentKey {
 };
 
 [[nodiscard]] std::vector<DifferentKey> different_keys(const OdometryConfig& a, const OdometryConfig& b);
+
+/// The same for the fields of two structs of one type.
+[[nodiscard]] std::vector<DifferentKey> different_keys(std::span<const ConfigField> a,
+                                                       std::span<const ConfigField> b);
+
+/// One key per line: `KEY = A -> B UNIT`. Empty if there are none.
+[[nodiscard]] std::string difference_text(std::span<const DifferentKey> keys);
 
 /// What a key means.
 struct KeyReference {

@@ -141,6 +141,7 @@ class Diagnoser {
                                           request_.part.count, kLeastFrames));
     deadline_s_ = options_.budget_s;
     diagnosis_.finished_run = true;
+    diagnosis_.foreign = options_.foreign;
     return trial_of(stream_, request_, *options_.finished);
   }
 
@@ -168,10 +169,12 @@ class Diagnoser {
   [[nodiscard]] std::vector<Cause> candidates(const RunResult& baseline) {
     const auto part = corrected_part(stream_, request_.part, kept_);
     announce("comparing images with other sensors");
-    const Trajectory visual = visual_trajectory(stream_, request_, kept_);
+    const Trajectory visual =
+        options_.foreign ? baseline.run.trajectory : visual_trajectory(stream_, request_, kept_);
     const RecordingSurvey survey = survey_recording(*part, visual, request_.stop_requested);
     const std::optional<DepthAlignment> alignment = align_depth(*part, request_.stop_requested);
-    std::vector<Cause> all = run_causes(baseline.run, part->info());
+    std::vector<Cause> all;
+    if (!options_.foreign) all = run_causes(baseline.run, part->info());
     if (request_.stop_requested()) {  // what is missing would look like a fault
       leave_out("the comparison of images with other sensors");
       spent_ = true;
@@ -225,6 +228,7 @@ class Diagnoser {
       cause.consistent = cause.error_ratio && is_exceptional(cause, baseline.result);
       return;
     }
+    if (options_.foreign) return;
     std::vector<Correction> corrections = kept_;
     corrections.push_back(*cause.correction);
     const std::optional<Trial> trial = affords(1.0) ? trial_with(corrections) : std::nullopt;
@@ -313,7 +317,8 @@ Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions&
 
 TruthReport check_truth(const datasets::SensorStream& stream, const DiagnosisOptions& options) {
   const TrialRequest request = request_of(stream, options);
-  const Trajectory visual = visual_trajectory(stream, request, {});
+  const Trajectory visual =
+      options.finished ? options.finished->trajectory : visual_trajectory(stream, request, {});
   const auto part = corrected_part(stream, request.part, {});
   return truth_report(part->info(), survey_recording(*part, visual, options.stop_requested), visual);
 }

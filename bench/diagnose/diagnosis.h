@@ -26,6 +26,9 @@ struct DiagnosisOptions {
   std::function<double()> elapsed_s{};  ///< of the budget; thread-safe; empty: since the call
   /// A finished run of the first frames with the config, in place of the first trial; only with ground truth.
   std::optional<OdometryRun> finished{};
+  /// `finished` is of another system, which is not executed: its trajectory takes the place of that without
+  /// IMU, causes in this odometry are left out, and effects of corrections are not measured.
+  bool foreign = false;
   double length_s = 15.0;                                  ///< of the part of the recording, from its start
   std::function<bool()> stop_requested{};                  ///< thread-safe; may be empty
   std::function<void(const std::string& step)> on_step{};  ///< what is being done; may be empty
@@ -41,6 +44,7 @@ struct Diagnosis {
   double least_effect = 0.1;  ///< relative change of the error that counts: 10 %, or what chance causes
   int trials = 0;
   bool finished_run = false;  ///< `error` is that of the finished run
+  bool foreign = false;       ///< which is of another system
   bool interrupted = false;
   std::vector<std::string> left_out;  ///< for lack of budget, one phrase each
   std::vector<Cause> causes;          ///< with an effect, worst first
@@ -56,7 +60,8 @@ void rank_harmless(std::vector<Cause>& causes);
 /// finished run of fewer frames or without ground truth
 [[nodiscard]] Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options);
 
-/// Only the comparison of the ground truth with the other sensors, by one run without IMU.
+/// Only the comparison of the ground truth with the other sensors, by one run without IMU, or by the finished
+/// run.
 /// @throws InputError for a recording with too few frames
 [[nodiscard]] TruthReport check_truth(const datasets::SensorStream& stream, const DiagnosisOptions& options);
 

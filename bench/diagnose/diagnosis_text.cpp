@@ -53,6 +53,19 @@ nlohmann::ordered_json list(const std::vector<Cause>& causes) {
   return entries;
 }
 
+/// Of a run of another system, with evidence and remedy: the effects are measured with this odometry.
+std::string unmeasured_text(const Diagnosis& diagnosis) {
+  if (diagnosis.unmeasured.empty()) return "";
+  if (!diagnosis.foreign) return "found, effect not measured: " + names(diagnosis.unmeasured) + "\n";
+  std::string text = "found; the effect needs a run of this odometry (leave RUN out):\n";
+  std::size_t number = 0;
+  for (const Cause& cause : diagnosis.unmeasured) {
+    if (++number > kMaxCauses) break;
+    text += fmt::format("- {}: {}\n  remedy: {}\n", cause.name, cause.evidence, cause.remedy);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {
@@ -65,12 +78,11 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
                         cause.correction ? "without it" : "outside of the frames concerned", cause.evidence,
                         cause.remedy);
   }
-  if (diagnosis.causes.empty())
+  if (diagnosis.causes.empty() && !(diagnosis.foreign && !diagnosis.unmeasured.empty()))
     text += fmt::format("nothing found that changes the error by more than {:.0f} %\n",
                         100.0 * diagnosis.least_effect);
   if (!diagnosis.harmless.empty()) text += "found, with less effect: " + names(diagnosis.harmless) + "\n";
-  if (!diagnosis.unmeasured.empty())
-    text += "found, effect not measured: " + names(diagnosis.unmeasured) + "\n";
+  text += unmeasured_text(diagnosis);
   if (!diagnosis.left_out.empty())
     text += fmt::format("left out, for lack of budget: {}\n", fmt::join(diagnosis.left_out, "; "));
   return text + (diagnosis.interrupted ? "interrupted\n" : "");
@@ -88,6 +100,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"least_effect", diagnosis.least_effect},
       {"trials", diagnosis.trials},
       {"finished_run", diagnosis.finished_run},
+      {"other_system", diagnosis.foreign},
       {"interrupted", diagnosis.interrupted},
       {"left_out", diagnosis.left_out},
       {"causes", list(diagnosis.causes)},

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the commands of the minimal build (STILLPOINT_MINIMAL) could call, but which it does not have: the
-// renderer and the registry of sequences, PDF and PNG files, the files of pages, and recordings for viewers.
+// renderer and the registry of sequences, descriptions of other systems, PDF and PNG files, the files of
+// pages, and recordings for viewers.
 #include "bench/config/toml_source.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/run/sequence_source.h"
+#include "bench/systems/external_system.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 #include "reports/drawing/drawing_module.h"
@@ -23,6 +25,16 @@ std::unique_ptr<datasets::SensorStream> bench::find_sequence(const std::string& 
                                                              const datasets::OpenOptions& options,
                                                              const synth::RenderControl&, const PresetPart&) {
   return datasets::open_sequence(name, options);
+}
+
+bool bench::is_description(const std::string&) { return false; }
+
+/// Never reached: nothing is a description.
+bench::ExternalSystem bench::load_external_system(const std::string& name) {
+  throw InputError(name, "this build executes no other systems (STILLPOINT_MINIMAL); use a full build");
+}
+std::vector<bench::DifferentKey> bench::different_keys(const ExternalSystem&, const ExternalSystem&) {
+  return {};
 }
 
 std::span<const bench::EmbeddedFile> bench::web_files() { return {}; }

@@ -278,6 +278,28 @@ ExternalSystem load_external_system(const std::string& name) {
   return system;
 }
 
+bool is_description(const std::string& name) {
+  const std::string file = parse_system_name(name).file;
+  if (std::ranges::count(embedded_names(TomlKind::kSystem), file) > 0) return true;
+  if (!file.ends_with(".toml") || !fs::is_regular_file(file)) return false;
+  return std::ranges::any_of(parse_settings(eval::read_text_file(file), file),
+                             [](const Setting& setting) { return setting.key == "command"; });
+}
+
+std::vector<DifferentKey> different_keys(const ExternalSystem& a, const ExternalSystem& b) {
+  ExternalSystem copy_a = a;
+  ExternalSystem copy_b = b;
+  std::vector<DifferentKey> keys = different_keys(fields_of(copy_a), fields_of(copy_b));
+  std::map<std::string, std::string> all = a.param;
+  all.insert(b.param.begin(), b.param.end());
+  for (const auto& [name, unused] : all) {
+    const std::string& value_a = copy_a.param[name];
+    const std::string& value_b = copy_b.param[name];
+    if (value_a != value_b) keys.push_back({std::string(kParamPrefix) + name, value_a, value_b, ""});
+  }
+  return keys;
+}
+
 std::string description_template(const std::string& name) {
   return fmt::format(
       R"(# Description of a SLAM system for stillpoint; manual: bench/README.md, "Any system".

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "bench/config/config_keys.h"
 #include "core/base/fields.h"
 #include "core/types/rig.h"
 
@@ -171,6 +172,14 @@ struct SystemName {
 /// @param sets names of the parameter sets
 [[nodiscard]] ExternalSystem parse_external_system(const std::string& text, const std::string& path,
                                                    const std::vector<std::string>& sets = {});
+
+/// Whether a name is that of a description: an embedded one, or a file with the key `command`. Parameter sets
+/// may follow.
+[[nodiscard]] bool is_description(const std::string& name);
+
+/// The keys of two descriptions whose values differ, with those of [param] after the applied sets. A
+/// parameter that only one has is empty in the other.
+[[nodiscard]] std::vector<DifferentKey> different_keys(const ExternalSystem& a, const ExternalSystem& b);
 
 /// The files that determine a run beside the description: its template, its program, and files of the command
 /// with {here}, {bin} or {source}. Those that do not exist, and the program of an image, are left out.

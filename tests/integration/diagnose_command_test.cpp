@@ -199,6 +199,52 @@ TEST(DiagnoseCommand, TakesAStoredRun) {
   EXPECT_NE(unknown.err.find("store list"), std::string::npos) << unknown.err;
 }
 
+/// A stored run of a system that copies a trajectory.
+/// @return the key of the run
+std::string run_of_other_system(const fs::path& trajectory, const fs::path& store,
+                                const TemporaryFolder& folder) {
+  folder.write("copy.toml", "name = \"copy\"\ncommand = [\"cp\", \"" + trajectory.string() +
+                                "\", \"{out}/trajectory.tum\"]\nlayout = \"as_is\"\n");
+  const fs::path plan = folder.write(
+      "plan.toml", "title = \"Copy\"\nvariants = []\nseeds = [1]\nsystems = [\"" +
+                       (folder.path() / "copy.toml").string() + "\"]\n[recorded]\nsequences = [\"" +
+                       rendered_sequence().string() + "\"]\n");
+  const ProgramResult bench = run_program({"bench", plan.string(), "--store", store.string()});
+  EXPECT_EQ(bench.exit_code, 0) << bench.out << bench.err;
+  const ProgramResult list = run_program({"store", "list", store.string()});
+  return list.out.substr(0, list.out.find(' '));
+}
+
+TEST(DiagnoseCommand, TellsWhatDataRunAndTruthTellOfAnotherSystem) {
+  const TemporaryFolder folder;
+  const fs::path trajectory = run_of(rendered_sequence(), folder) / "trajectory.tum";
+  const fs::path store = folder.path() / "store.sqlite";
+  const std::string key = run_of_other_system(trajectory, store, folder);
+  const ProgramResult sound = diagnosis_of(rendered_sequence(), {key, "--store", store.string()});
+  EXPECT_EQ(sound.exit_code, 0) << sound.out << sound.err;
+  EXPECT_NE(sound.out.find("the given run and 0 trials"), std::string::npos) << sound.out;
+  const ProgramResult faulty = diagnosis_of(
+      rendered_sequence(), {key, "--store", store.string(), "--fault", "blank:start=1,duration=1"});
+  EXPECT_EQ(faulty.exit_code, 2) << faulty.out;
+  EXPECT_NE(faulty.err.find("store extract"), std::string::npos) << faulty.err;
+
+  const fs::path copy = copy_of_rendered_sequence(folder);
+  scale_columns(copy / "d400_gyroscope.txt", 180.0 / M_PI);
+  const ProgramResult degrees = diagnosis_of(copy, {trajectory.string()});
+  EXPECT_EQ(degrees.exit_code, 1) << degrees.out << degrees.err;
+  EXPECT_NE(degrees.out.find("- gyroscope in deg/s"), std::string::npos) << degrees.out;
+  EXPECT_NE(degrees.out.find("leave RUN out"), std::string::npos) << degrees.out;
+  plant_jump(copy / "groundtruth.txt");
+  const ProgramResult truth = diagnosis_of(copy, {trajectory.string(), "--truth"});
+  EXPECT_EQ(truth.exit_code, 1) << truth.out << truth.err;
+  EXPECT_NE(truth.out.find("ground truth jumps: 1 step(s)"), std::string::npos) << truth.out;
+
+  const fs::path late = folder.write("late.tum", "9e9 0 0 0 0 0 0 1\n");
+  const ProgramResult elsewhere = diagnosis_of(copy, {late.string()});
+  EXPECT_EQ(elsewhere.exit_code, 2);
+  EXPECT_NE(elsewhere.err.find("no pose at the time of a frame"), std::string::npos) << elsewhere.err;
+}
+
 TEST(DiagnoseCommand, NamesTheProblemOfABudgetWithoutUnit) {
   const ProgramResult result = diagnosis_of(rendered_sequence(), {"--budget", "60"});
   EXPECT_EQ(result.exit_code, 2);

@@ -230,5 +230,25 @@ TEST(SystemsCommand, ListNamesProgramsThatAreNotFound) {
             std::string::npos);
 }
 
+TEST(SystemsCommand, ConfigDiffComparesDescriptionsAndParameterSets) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder
+          .write("slam.toml",
+                 "name = \"slam\"\ncommand = [\"cat\", \"{param.corners}\"]\nlayout = \"euroc\"\n"
+                 "[param]\ncorners = 500\n[variant.few]\ncorners = 100\n")
+          .string();
+  const std::string other = folder.write("other.toml", "name = \"other\"\ncommand = [\"cat\"]\n").string();
+  EXPECT_EQ(run_program({"config", "diff", file, file + "+few"}).out, "param.corners = 500 -> 100\n");
+  const ProgramResult result = run_program({"config", "diff", file, other});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("layout = \"euroc\" -> \"tum\"\n"), std::string::npos) << result.out;
+  EXPECT_EQ(run_program({"config", "diff", "orb_pnp", "orb_pnp"}).out, "");
+  const ProgramResult mixed = run_program({"config", "diff", file, "vo"});
+  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_NE(mixed.err.find("no description of a system"), std::string::npos) << mixed.err;
+  EXPECT_EQ(run_program({"config", "diff", file, file + "+fex"}).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <memory>
+#include <vector>
 
 #include <spdlog/spdlog.h>
 
@@ -9,6 +10,8 @@
 #include "bench/config/config_hash.h"
 #include "bench/config/config_keys.h"
 #include "bench/config/toml_source.h"
+#include "bench/systems/external_system.h"
+#include "core/base/error.h"
 #include "reports/tables/data_table.h"
 
 namespace stillpoint::bench {
@@ -32,24 +35,34 @@ int list(bool json) {
   return kExitOk;
 }
 
-/// The operands of `config diff`: variants of the default base.
+/// The operands of `config diff`: variants of the default base, or descriptions of systems.
 struct DiffArguments {
   std::string a, b;
   bool json = false;
 };
 
-int diff(const DiffArguments& arguments) {
+/// @throws InputError if only one of the operands is a description, and for the faults of both
+std::vector<DifferentKey> keys_of(const DiffArguments& arguments) {
+  const bool is_system = is_description(arguments.a);
+  if (is_system != is_description(arguments.b))
+    throw InputError(is_system ? arguments.b : arguments.a,
+                     "is no description of a system, the other operand is one; name two of a kind");
+  if (is_system) return different_keys(load_external_system(arguments.a), load_external_system(arguments.b));
   const auto load = [](const std::string& variant) {
     return load_config({.base = "stillpoint", .variant = variant, .settings = {}});
   };
+  return different_keys(load(arguments.a), load(arguments.b));
+}
+
+int diff(const DiffArguments& arguments) {
+  const std::vector<DifferentKey> keys = keys_of(arguments);
   if (!arguments.json) {
-    std::cout << difference_text(load(arguments.a), load(arguments.b));
+    std::cout << difference_text(keys);
     return kExitOk;
   }
   report::DataTable table{
       .kind = "config_diff", .columns = {"key", "a", "b", "unit"}, .rows = {}, .notes = {}};
-  for (const auto& [key, a, b, unit] : different_keys(load(arguments.a), load(arguments.b)))
-    table.rows.push_back({key, a, b, report::data_value(unit)});
+  for (const auto& [key, a, b, unit] : keys) table.rows.push_back({key, a, b, report::data_value(unit)});
   std::cout << report::data_json(table);
   return kExitOk;
 }
@@ -57,10 +70,13 @@ int diff(const DiffArguments& arguments) {
 Command diff_command() {
   const auto arguments = std::make_shared<DiffArguments>();
   return {.name = "diff",
-          .summary = "Print the keys that differ between two configs, with both values and the unit",
+          .summary =
+              "Print the keys that differ between two configs, or two descriptions of systems, with both "
+              "values and the unit",
           .example = "config diff stillpoint dynamic_vins+vo",
-          .options = {{"A", "Embedded name or TOML file, with overlays joined by +", &arguments->a},
-                      {"B", "The same, of the other config", &arguments->b},
+          .options = {{"A", "Embedded name or TOML file, with overlays or parameter sets joined by +",
+                       &arguments->a},
+                      {"B", "The same, of the other one", &arguments->b},
                       {"--json", report::kJsonHelp, &arguments->json}},
           .action = [arguments] { return diff(*arguments); }};
 }

@@ -17,6 +17,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "bench/cli/run/finished_run.h"
+#include "bench/cli/run/foreign_run.h"
 #include "bench/cli/run/profile_report.h"
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/diagnose/diagnosis.h"
@@ -65,8 +66,9 @@ std::optional<OdometryRun> finished_run(const DiagnoseArguments& arguments,
   // Not in the braces below: g++ 12 destroys members of an aggregate twice if an initializer throws.
   const OdometryConfig config = load_config(config_of(arguments, info));
   const std::vector<datasets::SensorFault> faults = parsed_faults(arguments.faults);
-  return read_finished_run({arguments.run, arguments.store},
-                           {.info = info, .config = config, .faults = faults, .rig_file = arguments.rig});
+  const FinishedRunSource source{arguments.run, arguments.store};
+  const RunConditions conditions{.info = info, .config = config, .faults = faults, .rig_file = arguments.rig};
+  return is_foreign(source) ? read_foreign_run(source, conditions) : read_finished_run(source, conditions);
 }
 
 /// @param start of the budget: opening a recording counts
@@ -79,6 +81,7 @@ DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::
       .elapsed_s =
           [start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); },
       .finished = std::move(finished),
+      .foreign = !arguments.run.empty() && is_foreign({arguments.run, arguments.store}),
       .length_s = arguments.length_s,
       .stop_requested = interrupt_requested,
       .on_step = [](const std::string& step) { spdlog::debug("{}", step); }};
@@ -149,8 +152,10 @@ int diagnose_sequence(const DiagnoseArguments& arguments) {
   install_interrupt_handlers();
   if (arguments.run.empty() && !arguments.store.empty())
     throw InputError("--store", "requires SEQ and the key of a run; see `stillpoint store list`");
-  if (arguments.truth && !arguments.run.empty())
-    throw InputError("--truth", "compares the ground truth with a run without IMU of its own; leave RUN out");
+  if (arguments.truth && !arguments.run.empty() && !is_foreign({arguments.run, arguments.store}))
+    throw InputError("--truth",
+                     "compares the ground truth with a run without IMU of its own; leave RUN out, or name "
+                     "one of another system");
   if (arguments.truth) return check_truths(arguments);
   if (arguments.sequence.empty())
     throw InputError("SEQ", "is missing; only --truth works on all registered sequences");
@@ -160,7 +165,8 @@ int diagnose_sequence(const DiagnoseArguments& arguments) {
   const Diagnosis diagnosis = diagnose(*stream, options_of(arguments, stream->info(), start));
   std::cout << (arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));
   if (diagnosis.interrupted) return kExitInterrupted;
-  return diagnosis.causes.empty() ? kExitOk : kExitFindings;
+  const bool is_found = !diagnosis.causes.empty() || (diagnosis.foreign && !diagnosis.unmeasured.empty());
+  return is_found ? kExitFindings : kExitOk;
 }
 
 }  // namespace
@@ -178,7 +184,8 @@ Command diagnose_command() {
             .may_be_omitted = true},
            {.name = "RUN",
             .help = "Finished run of SEQ, in place of the first one: output folder of `run`, or a key with "
-                    "--store",
+                    "--store. Of another system, or a trajectory of the camera: what the data, the run and "
+                    "the ground truth tell",
             .target = &a->run,
             .may_be_omitted = true},
            {"--store", "Store that contains RUN", &a->store},

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/config/config_hash.h"
+#include "bench/config/config_keys.h"
 #include "bench/config/settings.h"
 #include "bench/model/stored_run.h"
 
@@ -95,11 +96,11 @@ TEST(ConfigText, DifferenceShowsBothValuesAndTheUnit) {
   changed.backend.window_size = 12;
   changed.backend.cauchy_scale = 0.5;
   changed.imu.enabled = false;
-  EXPECT_EQ(difference_text(OdometryConfig{}, changed),
+  EXPECT_EQ(difference_text(different_keys(OdometryConfig{}, changed)),
             "imu.enabled = true -> false\n"
             "backend.window_size = 10 -> 12 frames\n"
             "backend.cauchy_scale = 1.0 -> 0.5 sigma\n");
-  EXPECT_EQ(difference_text(changed, changed), "");
+  EXPECT_EQ(difference_text(different_keys(changed, changed)), "");
 }
 
 }  // namespace
