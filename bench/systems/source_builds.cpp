@@ -125,9 +125,12 @@ SourceBuild SourceBuilds::build(const SourceCommit& commit) const {
   const fs::path mark = folder_ / (commit.hash + ".built");
   SourceBuild build{.tree = tree, .program = tree / source_.binary, .failure = {}};
   build.cached = fs::exists(mark) && fs::exists(build.program);
+  if (!build.cached) {
+    fs::remove(mark);
+    add_tree(commit, tree);
+  }
+  fs::last_write_time(tree, fs::file_time_type::clock::now());  // the order of `keep_latest`
   if (build.cached) return build;
-  fs::remove(mark);
-  add_tree(commit, tree);
   ProcessSpec spec{.program = source_.build.front(), .folder = tree, .output_in_messages = true};
   spec.arguments.assign(source_.build.begin() + 1, source_.build.end());
   if (spec.program.string().find('/') != std::string::npos) spec.program = tree / spec.program;
@@ -144,6 +147,23 @@ SourceBuild SourceBuilds::build(const SourceCommit& commit) const {
     eval::write_text_file(mark, "");
   }
   return build;
+}
+
+std::size_t SourceBuilds::keep_latest(std::size_t count) const {
+  const FileLock lock(folder_ / "lock", LockKind::kExclusive);
+  std::vector<fs::path> trees;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    if (entry.is_directory()) trees.push_back(entry.path());
+  }
+  std::ranges::sort(trees, std::ranges::greater{},
+                    [](const fs::path& tree) { return fs::last_write_time(tree); });
+  if (trees.size() <= count) return 0;
+  for (std::size_t i = count; i < trees.size(); ++i) {
+    fs::remove(fs::path(trees[i]).concat(".built"));
+    fs::remove_all(trees[i]);
+  }
+  static_cast<void>(git({"worktree", "prune"}));
+  return trees.size() - count;
 }
 
 ExternalSystem built_system(ExternalSystem system, const SourceCommit& commit, const SourceBuild& build) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Programs built from the commits of a git repository, each in a work tree of its own. Work trees and builds
-/// are kept, so that a commit is built once.
+/// are kept until `keep_latest`, so that a commit is built once.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -64,6 +65,11 @@ class SourceBuilds {
   /// Builds a commit in its work tree unless that was done before; other processes wait meanwhile. What the
   /// build printed last is in HASH.log in the folder of the builds.
   [[nodiscard]] SourceBuild build(const SourceCommit& commit) const;
+
+  /// Removes the work trees and builds of this source but for those that `build` was called for last. Their
+  /// programs must not be in use.
+  /// @return number of the removed ones
+  std::size_t keep_latest(std::size_t count) const;
 
  private:
   [[nodiscard]] std::string git(const std::vector<std::string>& arguments) const;

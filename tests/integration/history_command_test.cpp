@@ -87,6 +87,34 @@ TEST(History, FillsAStoreAndContinues) {
   EXPECT_EQ(measured, expected);
 }
 
+/// Names of the folders of builds, in those of all sources.
+std::vector<std::string> kept_builds(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& source : fs::directory_iterator(folder)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(source)) {
+      if (entry.is_directory()) names.push_back(entry.path().filename().string());
+    }
+  }
+  return names;
+}
+
+TEST(History, KeepsAsManyBuildsAsToldTo) {
+  const MadeUpProject& project = shared_project();
+  std::vector<std::string> arguments = history_arguments(project, "kept.sqlite");
+  arguments.insert(arguments.end(),
+                   {"--builds", project.file("kept"), "--max-commits", "2", "--keep-builds", "1"});
+  const ProgramResult result = project.run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  const std::vector<std::string> measured = builds_in(project.file("kept.sqlite"));
+  ASSERT_EQ(std::set<std::string>(measured.begin(), measured.end()).size(), 2u);
+  EXPECT_EQ(kept_builds(project.file("kept")), std::vector<std::string>{measured.back()});
+  arguments.back() = "0";
+  const ProgramResult again = project.run(arguments);
+  EXPECT_NE(again.out.find("0 executed, 2 stored before"), std::string::npos) << again.out << again.err;
+  EXPECT_TRUE(kept_builds(project.file("kept")).empty());
+  EXPECT_EQ(builds_in(project.file("kept.sqlite")).size(), 4u);
+}
+
 // A repository with the presets of this project, whose program is the replay system.
 TEST(History, OfThisOdometryBuildsItsPreset) {
   const MadeUpProject& project = shared_project();

@@ -31,8 +31,9 @@ struct HistoryArguments {
   std::string plan = "quick";
   std::string store = "build/bench/store.sqlite";
   std::string builds;
-  int max_commits = 0;  ///< 0 = all
-  int jobs = 0;         ///< 0 = all processors
+  int max_commits = 0;   ///< 0 = all
+  int jobs = 0;          ///< 0 = all processors
+  int keep_builds = -1;  ///< -1 = all
 };
 
 /// What became of the commits.
@@ -132,16 +133,23 @@ class HistoryRunner {
                    missing[i].subject);
       const Stopwatch time;
       measure(missing[i]);
+      remove_builds();
       counts_.seconds += time.seconds();
       const std::size_t left = missing.size() - i - 1;
       if (left > 0 && !interrupt_requested())
         spdlog::info("{} commits left, about {}", left,
                      duration_text(counts_.seconds / static_cast<double>(i + 1) * static_cast<double>(left)));
     }
+    remove_builds();
     return counts_;
   }
 
  private:
+  /// Keeps as many builds as the user wants to.
+  void remove_builds() const {
+    if (arguments_.keep_builds >= 0) builds_.keep_latest(static_cast<std::size_t>(arguments_.keep_builds));
+  }
+
   /// Whether all runs of a commit were executed before: it is not built then.
   bool is_stored(const SourceCommit& commit, const OutcomeOfRun& stored) {
     const PlanMatrix matrix = system_.runs(commit, {});
@@ -208,6 +216,10 @@ Command history_command() {
                   {"--plan", "Sequences, faults and repetitions [quick]", &arguments->plan},
                   {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
                   {"--builds", kBuildsHelp, &arguments->builds},
+                  {"--keep-builds",
+                   "Number of builds of this repository that are kept, the latest ones; 0 removes all [all]",
+                   &arguments->keep_builds,
+                   {0, 1000000}},
                   {"--max-commits",
                    "Only the newest commits of the range [all]",
                    &arguments->max_commits,
