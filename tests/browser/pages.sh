@@ -27,7 +27,9 @@ watch() {
 store="${STILLPOINT_REPORT_STORE:-$work/store.sqlite}"
 if [[ -z "${STILLPOINT_REPORT_STORE:-}" ]]; then
   rm -rf "$store" "$store.files" "$work/plan"
-  "$program" bench "$here/plan.toml" --store "$store" --out "$work/plan" >"$work/plan.log" 2>&1 &
+  # One run at a time: the store keeps whole seconds, so that of two concurrent ones that end in the same second, the later
+  # one may be listed as the earlier one.
+  "$program" bench "$here/plan.toml" --jobs 1 --store "$store" --out "$work/plan" >"$work/plan.log" 2>&1 &
   bench=$!
   watch "$store" || { kill "$bench"; wait "$bench" || true; exit 1; }
   wait "$bench"
