@@ -119,16 +119,26 @@ TEST(ProfileCommand, ReportsUnavailableMeasurements) {
   EXPECT_NE(energy, result.out.find("energy: n/a: ") != std::string::npos) << result.out;
 }
 
-TEST(ProfileCommand, NamesABusyMachine) {
-  const pid_t other = fork();
-  if (other == 0) {
+/// Starts a process that only computes.
+pid_t start_busy_process() {
+  const pid_t child = fork();
+  if (child == 0) {
     for (std::atomic<unsigned> count = 0;; ++count) {
     }
   }
+  return child;
+}
+
+TEST(ProfileCommand, NamesABusyMachine) {
+  // One per ten processors: at least a tenth of the machine is busy, and a load of 5 % is reported.
+  std::vector<pid_t> others;
+  for (long i = 0; i <= sysconf(_SC_NPROCESSORS_ONLN) / 10; ++i) others.push_back(start_busy_process());
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder);
-  kill(other, SIGKILL);
-  waitpid(other, nullptr, 0);
+  for (const pid_t other : others) {
+    kill(other, SIGKILL);
+    waitpid(other, nullptr, 0);
+  }
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("the machine was not idle: other processes used"), std::string::npos)
       << result.out;
