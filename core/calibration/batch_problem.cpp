@@ -338,7 +338,8 @@ double trimmed_deviation(std::vector<double> values) {
 RoundStatistics BatchProblem::update_deviations() {
   RoundStatistics statistics{.landmarks = landmark_count_, .inertial_factors = inertial_.size()};
   std::vector<double> pixels, depths;
-  std::vector<double> pixel_norms(seen_.size()), depth_errors(seen_.size(), 0.0);
+  std::vector<Eigen::Vector2d> errors(seen_.size());
+  std::vector<double> depth_errors(seen_.size(), 0.0);
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
     const std::array<const double*, 8> blocks = depth_blocks(seen);
@@ -347,7 +348,7 @@ RoundStatistics BatchProblem::update_deviations() {
     Eigen::Vector2d r;
     static_cast<void>(seen.pixel->Evaluate(pixel_blocks.data(), r.data(), nullptr));
     r *= state_.pixel_sigma_px;
-    pixel_norms[i] = r.norm();
+    errors[i] = r;
     pixels.insert(pixels.end(), {std::abs(r.x()), std::abs(r.y())});
     if (seen.depth == nullptr) continue;
     static_cast<void>(seen.depth->Evaluate(blocks.data(), &depth_errors[i], nullptr));
@@ -364,7 +365,8 @@ RoundStatistics BatchProblem::update_deviations() {
   state_.inverse_depth_sigma = std::max(1e-4, statistics.inverse_depth_rms);
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     BatchObservation& observation = *seen_[i].observation;
-    observation.pixel_is_inlier = pixel_norms[i] <= kLargestResidual * state_.pixel_sigma_px;
+    observation.pixel_is_inlier = errors[i].norm() <= kLargestResidual * state_.pixel_sigma_px;
+    if (observation.pixel_is_inlier) statistics.residuals.push_back({observation.feature.pixel, errors[i]});
     observation.depth_is_inlier = depth_errors[i] <= kLargestResidual * state_.inverse_depth_sigma;
     statistics.observations += observation.pixel_is_inlier;
     statistics.depths +=

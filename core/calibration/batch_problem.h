@@ -61,6 +61,7 @@ struct RoundStatistics {
   double inverse_depth_rms = 0.0;  ///< likewise [1/m]; zero without depth
   double cost = 0.0;
   std::size_t landmarks = 0, observations = 0, depths = 0, inertial_factors = 0;
+  std::vector<ImageResidual> residuals;  ///< of inliers
 };
 
 class BatchProblem {

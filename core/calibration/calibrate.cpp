@@ -258,13 +258,15 @@ bool set_back_unobserved(Solution& solution, const RigCalibration& stated, const
 HeldOutResiduals held_out_residuals(Rounds& rounds, const CalibrationInput& input,
                                     const SharedValues& found) {
   BatchState state = initial_state(input, 0.5, 1.0);
-  const RoundStatistics before = rounds.solve(state, SharedFlags{}).statistics;
+  RoundStatistics before = rounds.solve(state, SharedFlags{}).statistics;
   state.shared = found;
-  const RoundStatistics after = rounds.solve(std::move(state), SharedFlags{}).statistics;
+  RoundStatistics after = rounds.solve(std::move(state), SharedFlags{}).statistics;
   return {.pixel_before_px = before.pixel_rms_px,
           .pixel_after_px = after.pixel_rms_px,
           .depth_before = before.inverse_depth_rms,
-          .depth_after = after.inverse_depth_rms};
+          .depth_after = after.inverse_depth_rms,
+          .before = std::move(before.residuals),
+          .after = std::move(after.residuals)};
 }
 
 /// By how much more the halves differ than their deviations say; at least 1.

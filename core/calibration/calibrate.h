@@ -33,6 +33,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "core/calibration/calibration_recording.h"
 #include "core/types/rig.h"
 
@@ -110,12 +112,19 @@ struct ParameterEstimate {
   [[nodiscard]] double difference() const { return value - stated; }
 };
 
+/// Reprojection error of one observation.
+struct ImageResidual {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();     ///< where it was seen [px]
+  Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  ///< predicted minus seen
+};
+
 /// RMS of the residuals of one half of the keyframes, with the calibration that was estimated from the other.
 struct HeldOutResiduals {
   double pixel_before_px = 0.0;  ///< with the stated calibration
   double pixel_after_px = 0.0;
   double depth_before = 0.0;  ///< inverse depth [1/m]; zero without depth
   double depth_after = 0.0;
+  std::vector<ImageResidual> before, after;  ///< of all inliers
 };
 
 struct CalibrationResult {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -88,6 +90,24 @@ TEST(CalibrateCommand, TakesSeveralRecordingsOfADevice) {
   const nlohmann::json a = nlohmann::json::parse(one.out), b = nlohmann::json::parse(two.out);
   EXPECT_EQ(b["sequence"], a["sequence"].get<std::string>() + ", " + a["sequence"].get<std::string>());
   EXPECT_EQ(b["keyframes"], 2 * a["keyframes"].get<int>());
+}
+
+TEST(CalibrateCommand, DrawsTheResidualFieldBeforeAndAfter) {
+  const TemporaryFolder out;
+  const fs::path plot = out.path() / "residuals.svg";
+  const ProgramResult result =
+      run_program(calibrate_with({"--plot", plot.string(), "--fault", "distortion_error:amount=0.1"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // The pattern of the wrong distortion is gone in the second panel.
+  std::ifstream figure(plot);
+  const std::string svg{std::istreambuf_iterator<char>(figure), {}};
+  const std::regex means("means of cells ([0-9.]+) px");
+  std::vector<double> rms_px;
+  for (std::sregex_iterator match(svg.begin(), svg.end(), means); match != std::sregex_iterator(); ++match)
+    rms_px.push_back(std::stod((*match)[1]));
+  ASSERT_EQ(rms_px.size(), 2U) << svg;
+  EXPECT_LT(rms_px[1], 0.5 * rms_px[0]);
+  EXPECT_EQ(run_program(calibrate_with({"--plot", plot.string()})).exit_code, 2);  // not replaced
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint calibrate`: runs the odometry on recordings, and estimates the calibration from its tracks.
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -14,6 +15,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
+#include "bench/cli/run/calibration_figure.h"
 #include "bench/cli/run/calibration_report.h"
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/config/config_file.h"
@@ -24,6 +26,8 @@
 #include "core/calibration/calibrate.h"
 #include "core/calibration/calibration_recording.h"
 #include "datasets/calibration/rig_yaml_text.h"
+#include "reports/drawing/drawing.h"
+#include "reports/drawing/theme.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -33,7 +37,7 @@ constexpr double kMostKeyframes = 300.0;
 constexpr std::size_t kIterationsPerRound = 25;
 
 struct CalibrateArguments {
-  std::string out, out_format, rig, format, base = "stillpoint", variant;
+  std::string out, plot, out_format, rig, format, base = "stillpoint", variant;
   std::vector<std::string> sequences, settings, topics, faults, keep;
   double start_s = 0.0;
   int max_frames = 0;
@@ -182,6 +186,19 @@ std::string calibration_file(const CalibrationSubject& subject, const Calibratio
                                                     : datasets::rig_text(result.calibration.rig, format);
 }
 
+void write_plot(const CalibrateArguments& arguments, const datasets::SensorStream& stream,
+                const CalibrationResult& result) {
+  constexpr double kPixelsPerPoint = report::theme::kPixelsPerInch / 72.0;
+  if (!result.has_held_out) {
+    spdlog::warn(
+        "--plot: there are no held-out residuals, as the calibration was not completed; no figure is "
+        "written");
+    return;
+  }
+  const std::array<report::Drawing, 1> figure{residual_figure(result.held_out, stream.info().rig.camera)};
+  report::write_drawings(arguments.plot, figure, kPixelsPerPoint, rules_of(arguments));
+}
+
 /// @return empty if interrupted
 std::vector<Recording> open_recordings(const CalibrateArguments& arguments) {
   std::vector<Recording> recordings;
@@ -217,6 +234,7 @@ int calibrate_sequences(const CalibrateArguments& arguments) {
   static_cast<void>(switches_of(arguments));
   const datasets::RigFormat format = out_format_of(arguments);
   if (!arguments.out.empty()) require_safe_output(arguments.out, rules_of(arguments));
+  if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules_of(arguments));
   install_interrupt_handlers();
   const std::vector<Recording> recordings = open_recordings(arguments);
   if (recordings.empty()) return kExitInterrupted;
@@ -231,6 +249,7 @@ int calibrate_sequences(const CalibrateArguments& arguments) {
   std::cout << (arguments.json ? calibration_json(subject, result) : calibration_table(subject, result));
   if (!arguments.out.empty())
     write_output(arguments.out, calibration_file(subject, result, format), rules_of(arguments));
+  if (!arguments.plot.empty()) write_plot(arguments, *recordings.front().stream, result);
   if (result.interrupted) return kExitInterrupted;
   return result.usable ? kExitOk : kExitInconclusive;
 }
@@ -246,6 +265,9 @@ Command calibrate_command() {
       .options =
           {{"SEQ", "Sequence folders, bags or preset names, of one device", &a->sequences},
            {"--out", "Rig file to write; an existing file is not replaced", &a->out},
+           {"--plot",
+            "Figure of the held-out residuals over the image, before and after (.pdf, .svg, .png or .html)",
+            &a->plot},
            {"--out-format", "Program that is to read --out: " + enum_list<datasets::RigFormat>() + " [toml]",
             &a->out_format},
            {"--keep", "Keep a parameter as stated: " + switch_names() + "; may be repeated", &a->keep},
