@@ -200,7 +200,9 @@ Chart error_chart(const FigureInput& input, const FigureSize& size) {
   const auto add = [&](ChartAxis x, const char* title, Curves curves) {
     ChartPanel panel{
         .x = std::move(x), .y = {from_zero(y_range(curves)), title}, .height = panel_height(size)};
+    const Curve single = input.runs.size() == 1 ? curves.back() : Curve{};
     panel.draw = drawing_of(std::move(curves), chart.legend);
+    add_statistics(panel, single);
     chart.panels.push_back(std::move(panel));
   };
   Curves positions = error_curves(input, &eval::PoseError::translation_m);
@@ -220,6 +222,10 @@ Chart error_chart(const FigureInput& input, const FigureSize& size) {
   add({{0.0, std::max(distance.total_m(), 1e-3)}, "distance traveled [m]"}, "position error [m]",
       std::move(by_distance));
   drop_truth(chart);
+  if (input.runs.size() == 1) {
+    chart.legend.push_back({.style = theme::kMean, .name = "mean ± std", .numbers = {}});
+    chart.legend.push_back({.style = theme::kMedian, .name = "median", .numbers = {}});
+  }
   return chart;
 }
 
@@ -529,6 +535,10 @@ Chart chart_of(FigureKind kind, const FigureInput& input, const FigureSize& size
       return box_chart(input, size);
     case FigureKind::kCdf:
       return cdf_chart(input, size);
+    case FigureKind::kHistogram:
+      return histogram_chart(input, size);
+    case FigureKind::kBars:
+      return bars_chart(input, size);
     case FigureKind::kSpeed:
       break;
   }

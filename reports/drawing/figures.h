@@ -17,16 +17,18 @@
 
 namespace stillpoint::report {
 
-enum class FigureKind { kPath, kAxes, kRotation, kError, kRpe, kBox, kCdf, kSpeed };
+enum class FigureKind { kPath, kAxes, kRotation, kError, kRpe, kBox, kCdf, kHistogram, kBars, kSpeed };
 constexpr auto enum_names(FigureKind) {
-  return EnumNames<FigureKind, 8>{{{FigureKind::kPath, "path"},
-                                   {FigureKind::kAxes, "axes"},
-                                   {FigureKind::kRotation, "rotation"},
-                                   {FigureKind::kError, "error"},
-                                   {FigureKind::kRpe, "rpe"},
-                                   {FigureKind::kBox, "box"},
-                                   {FigureKind::kCdf, "cdf"},
-                                   {FigureKind::kSpeed, "speed"}}};
+  return EnumNames<FigureKind, 10>{{{FigureKind::kPath, "path"},
+                                    {FigureKind::kAxes, "axes"},
+                                    {FigureKind::kRotation, "rotation"},
+                                    {FigureKind::kError, "error"},
+                                    {FigureKind::kRpe, "rpe"},
+                                    {FigureKind::kBox, "box"},
+                                    {FigureKind::kCdf, "cdf"},
+                                    {FigureKind::kHistogram, "histogram"},
+                                    {FigureKind::kBars, "bars"},
+                                    {FigureKind::kSpeed, "speed"}}};
 }
 
 /// One estimated trajectory and its evaluation.
@@ -67,8 +69,9 @@ struct FigureInput {
 /// path: plan and side view, to scale; a single estimate is colored by its error. axes: x, y, z over time.
 /// rotation: roll, pitch, yaw (R = Rz(yaw) Ry(pitch) Rx(roll)) over time. error: over time and distance. rpe:
 /// relative errors over five lengths, the longest 20 to 50 % of the path, with 10 segments or more. box, cdf:
-/// distribution of the errors, with their densities between the 5th and 95th percentile. speed: linear and
-/// angular, over 0.2 s. Legends have the numbers of the evaluations.
+/// distribution of the errors, with their densities between the 5th and 95th percentile. histogram: numbers
+/// of poses in bins of one width. bars: RMSE, mean, median, standard deviation, least and largest error.
+/// speed: linear and angular, over 0.2 s. Legends have the numbers of the evaluations.
 /// @throws InputError naming the figure if no estimate has data for it
 [[nodiscard]] Drawing figure(FigureKind kind, const FigureInput& input, const FigureSize& size);
 
@@ -82,6 +85,15 @@ struct FigureInput {
 
 /// Position errors of a run with their times [s] since the first pose of the ground truth.
 [[nodiscard]] std::vector<CurvePoint> error_points(const FigureInput& input, const PlottedRun& run);
+
+/// Adds the mean and the median of the errors of a single run to its panel, above a band of one standard
+/// deviation around the mean.
+/// @param curve of the errors; without points, nothing is added
+void add_statistics(ChartPanel& panel, const Curve& curve);
+
+/// The charts of `FigureKind::kHistogram` and `FigureKind::kBars`.
+[[nodiscard]] Chart histogram_chart(const FigureInput& input, const FigureSize& size);
+[[nodiscard]] Chart bars_chart(const FigureInput& input, const FigureSize& size);
 
 /// The chart of `FigureKind::kPath`.
 /// @param input must outlive the chart, as its panels refer to it

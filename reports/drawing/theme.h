@@ -58,6 +58,10 @@ inline constexpr std::array<Color, 7> kErrorColors{{{94, 201, 98},
                                                     {71, 45, 123},
                                                     {68, 1, 84}}};
 
+/// Of the errors of a single estimate.
+inline constexpr LineStyle kMean = kEstimates[1];
+inline constexpr LineStyle kMedian = kEstimates[2];
+
 // Drawings for the screen, in units of a pixel.
 inline constexpr double kPlotWidth = 800.0;
 inline constexpr double kPlotMargin = 60.0;

@@ -270,6 +270,45 @@ TEST(PathFigure, HasTheLimitsOfItsColorBar) {
   expect_input_error([&] { static_cast<void>(figure(FigureKind::kPath, input, {})); }, {"--colormap-min"});
 }
 
+TEST(ErrorFigure, HasLinesOfMeanAndMedianForASingleEstimate) {
+  const CircleRuns circles;
+  const std::string one = svg_text(figure(FigureKind::kError, circles.one(), {}));
+  EXPECT_NE(one.find(">median</text>"), std::string::npos);
+  EXPECT_NE(one.find(">mean ± std"), std::string::npos);
+  EXPECT_EQ(svg_text(figure(FigureKind::kError, circles.both(), {})).find(">mean ±"), std::string::npos);
+}
+
+// Errors of 0.06 m (one pose) and 0.55 m (three): bins of 0.05 m, of which at most 25 are in [0, 0.55].
+TEST(HistogramFigure, CountsPosesInBins) {
+  CircleRuns circles;
+  circles.near_errors.per_pose.resize(4);
+  for (eval::PoseError& pose : circles.near_errors.per_pose) pose.translation_m = 0.55;
+  circles.near_errors.per_pose.front().translation_m = 0.06;
+  const Drawing drawing = figure(FigureKind::kHistogram, circles.one(), {});
+  const std::vector<Polyline> outlines = lines_of(drawing, theme::kEstimates[0].color, theme::kEstimateWidth);
+  ASSERT_FALSE(outlines.empty());
+  double floor = 0.0;
+  double highest = 1e9;
+  double one = 1e9;  // in the left half
+  const double middle = 0.5 * (outlines[0].points.front().x + outlines[0].points.back().x);
+  for (const Point2& p : outlines[0].points) {
+    floor = std::max(floor, p.y);
+    highest = std::min(highest, p.y);
+    if (p.x < middle) one = std::min(one, p.y);
+  }
+  EXPECT_NEAR((floor - highest) / (floor - one), 3.0, 0.01);
+}
+
+TEST(BarsFigure, HasABarOfEachStatisticAndEstimate) {
+  const CircleRuns circles;
+  const Drawing drawing = figure(FigureKind::kBars, circles.both(), {});
+  const auto bars = std::ranges::count_if(drawing.marks, [](const Mark& mark) {
+    const auto* const polygon = std::get_if<Polygon>(&mark);
+    return polygon != nullptr && polygon->color.red == theme::kEstimates[1].color.red;
+  });
+  EXPECT_EQ(bars, 12);  // six of positions, six of rotations
+}
+
 TEST(Figures, ExplainTheirBoxesInWholeLines) {
   const CircleRuns circles;
   const std::string svg = svg_text(figure(FigureKind::kBox, circles.both(), {}));
