@@ -5,6 +5,7 @@
 
 #include "bench/python/records.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
+#include "datasets/synthetic/sequence/request_rig.h"
 
 namespace stillpoint::python {
 namespace {
@@ -75,9 +76,9 @@ void bind_request(py::module_& m) {
       .field("track_sequence", &SynthRequest::track_sequence, "Number of the sequence of the preset track.")
       .field("times_file", &SynthRequest::times_file, "Recorded frame times; empty: equal intervals.")
       .field("mesh_file", &SynthRequest::mesh_file, "Scene of the preset mesh: PLY or OBJ.")
-      .field("rig_file", &SynthRequest::rig_file,
-             "Intrinsics and pose of the camera; empty: RealSense D435i.")
       .choice("layout", &SynthRequest::layout, "Of the files: openloris or tum.");
+  options.type().def("use_rig", &synth::use_rig, py::arg("file"),
+                     "Takes image size, calibration and noise of a rig file. Raises InputError.");
   options.type().def_property_readonly(
       "key", &synth::request_key,
       "Hash of the request and of the files that it names; that of a sequence in the cache.");

@@ -435,8 +435,9 @@ void append_recording(CalibrationInput& all, CalibrationInput next) {
                      "only some of the recordings have inertial data, or registered depth images; "
                      "calibrate recordings with the same sensors");
   }
-  if (next.sections.empty()) return;
-  const double shift_s = all.sections.empty() ? 0.0 : seconds_between(begin_of(next), end_of(all)) + kGap_s;
+  if (all.sections.empty() || next.sections.empty())
+    throw InputError("calibration", "a recording has no keyframes; leave it out, or correct the rig");
+  const double shift_s = seconds_between(begin_of(next), end_of(all)) + kGap_s;
   for (CalibrationSection& section : next.sections) {
     for (CalibrationKeyframe& keyframe : section.keyframes)
       keyframe.state.t = after(keyframe.state.t, shift_s);

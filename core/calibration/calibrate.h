@@ -156,8 +156,8 @@ struct CalibrationInput {
 
 /// Adds another recording of the same device, to which only the calibration is common. Its times are moved
 /// behind those of the recordings before it; `halves` of all are then, as a rule, different recordings.
-/// @throws InputError if the stated calibrations differ, or one has inertial data or registered depth images
-/// and the other has not
+/// @throws InputError if one has no keyframes, the stated calibrations differ, or one has inertial data or
+/// registered depth images and the other has not
 void append_recording(CalibrationInput& all, CalibrationInput next);
 
 /// @throws InputError if fewer than ten keyframes or 50 landmarks remain, or without both depth and IMU

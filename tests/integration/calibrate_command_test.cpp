@@ -83,12 +83,16 @@ TEST(CalibrateCommand, WritesTheLastIterationWhenInterrupted) {
 }
 
 TEST(CalibrateCommand, TakesSeveralRecordingsOfADevice) {
-  const std::string sequence = rendered_sequence().string();
+  const TemporaryFolder folder;
+  const std::string sequence = rendered_sequence().string(), copy = (folder.path() / "copy").string();
+  fs::copy(sequence, copy, fs::copy_options::recursive);
   const ProgramResult one = run_program({"calibrate", sequence, "--json", "--max-frames", "60"});
-  const ProgramResult two = run_program({"calibrate", sequence, sequence, "--json", "--max-frames", "60"});
+  const ProgramResult two = run_program({"calibrate", sequence, copy, "--json", "--max-frames", "60"});
   ASSERT_EQ(two.exit_code, 0) << two.err;
   const nlohmann::json a = nlohmann::json::parse(one.out), b = nlohmann::json::parse(two.out);
-  EXPECT_EQ(b["sequence"], a["sequence"].get<std::string>() + ", " + a["sequence"].get<std::string>());
+  EXPECT_EQ(b["sequence"], a["sequence"].get<std::string>() + ", copy");
+  EXPECT_EQ(run_program({"calibrate", sequence, sequence + "/."}).exit_code,
+            2);  // its data would count twice
   EXPECT_EQ(b["keyframes"], 2 * a["keyframes"].get<int>());
 }
 

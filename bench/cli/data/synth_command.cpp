@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -41,7 +43,8 @@ struct SynthArguments {
   double seconds = kPresetValue, rate = kPresetValue, focal = kPresetValue;
   double exposure_ms = kPresetValue, exposure_swing = kPresetValue, rolling_ms = kPresetValue;
   double start = kPresetValue;
-  double depth_noise = kPresetValue, depth_units = kPresetValue, time_offset_ms = 0.0, dropped = kPresetValue;
+  double time_offset_ms = std::numeric_limits<double>::quiet_NaN();  ///< not given; any number is a value
+  double depth_noise = kPresetValue, depth_units = kPresetValue, dropped = kPresetValue;
 };
 
 template <class Value, class Given>
@@ -72,8 +75,7 @@ synth::SynthRequest request_of(const SynthArguments& arguments) {
   request.track_sequence = arguments.track_sequence;
   request.mesh_file = arguments.mesh;
   if (!arguments.rig.empty()) use_rig_file(arguments, request);
-  if (arguments.time_offset_ms != 0.0 || arguments.rig.empty())
-    request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
+  if (!std::isnan(arguments.time_offset_ms)) request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
   override_with(request.seed, arguments.seed);
   override_with(request.seconds, arguments.seconds);
   override_with(request.start_s, arguments.start);
@@ -178,7 +180,10 @@ std::vector<Option> options_of(SynthArguments& arguments) {
        {0, 1000}},
       {"--mesh", "Scanned scene (PLY or OBJ with colors, meters, z up) instead of that of a preset",
        &arguments.mesh},
-      {"--rig", "Calibration and noise of the rendered sensors: rig.toml, or YAML of other programs",
+      {"--rig",
+       "Calibration and noise of the rendered sensors: rig.toml, or YAML of other programs; its time offset "
+       "and "
+       "read-out time are rendered, but not written",
        &arguments.rig},
       {"--times", "Recorded frame times, one per line [s]; a third field is the time of the depth image",
        &arguments.times},

@@ -2,10 +2,12 @@
 // `stillpoint calibrate`: runs the odometry on recordings, and estimates the calibration from its tracks.
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +17,6 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
-#include "bench/cli/run/calibration_figure.h"
 #include "bench/cli/run/calibration_report.h"
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/config/config_file.h"
@@ -202,7 +203,11 @@ void write_plot(const CalibrateArguments& arguments, const datasets::SensorStrea
 /// @return empty if interrupted
 std::vector<Recording> open_recordings(const CalibrateArguments& arguments) {
   std::vector<Recording> recordings;
+  std::set<std::string> names;
   for (const std::string& sequence : arguments.sequences) {
+    if (!names.insert(std::filesystem::weakly_canonical(sequence).string()).second)
+      throw InputError(sequence,
+                       "is given twice, which would count its data twice; give each recording once");
     recordings.push_back({sequence, open_stream(arguments, sequence, false)});
     if (!recordings.back().stream) return {};
     for (const std::string& note : recordings.back().stream->info().notes) spdlog::info("{}", note);
@@ -221,6 +226,8 @@ std::optional<CalibrationInput> record_all(const CalibrateArguments& arguments,
     std::optional<CalibrationInput> next =
         record(arguments, recording, std::max(kLeastInterval_s, all_s / kMostKeyframes));
     if (!next) return std::nullopt;
+    if (recordings.size() > 1 && next->sections.empty())
+      throw InputError(recording.sequence, "the odometry located no frame; leave it out, or correct the rig");
     if (!all) {
       all = std::move(next);
     } else {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The result of `stillpoint calibrate` as a table, as JSON, and as a rig file.
+/// The result of `stillpoint calibrate` as a table, as JSON, as a rig file, and as a figure.
 #pragma once
 
 #include <string>
 
 #include "core/calibration/calibrate.h"
+#include "core/geometry/camera.h"
+#include "reports/drawing/drawing.h"
 
 namespace stillpoint::bench {
 
@@ -28,5 +30,10 @@ struct CalibrationSubject {
 /// as comments.
 [[nodiscard]] std::string calibrated_rig_text(const CalibrationSubject& subject,
                                               const CalibrationResult& result);
+
+/// Mean reprojection error in the cells of a grid over the image, as lines: with the stated calibration, and
+/// with that of the other half. What poses and points cannot absorb, as distortion, shows as a pattern; noise
+/// does not. Both panels have one scale.
+[[nodiscard]] report::Drawing residual_figure(const HeldOutResiduals& residuals, const Camera& camera);
 
 }  // namespace stillpoint::bench

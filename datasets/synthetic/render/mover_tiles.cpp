@@ -31,7 +31,7 @@ struct Bounds {
 
   void add(const Eigen::Vector3f& p_c, const Camera& camera) {
     ahead = ahead || p_c.z() > 0.0F;
-    beyond &= camera.has_distortion() ? 0U : sides_beyond(p_c, camera);  // a bent image has no such planes
+    beyond &= sides_beyond(p_c, camera);
     if (p_c.z() < kNearest_m) {
       near = true;
       return;
@@ -72,6 +72,10 @@ MoverTiles::MoverTiles(const MovingMesh& mesh, const Camera& camera, std::span<c
     : columns_((camera.width + kTile_px - 1) / kTile_px),
       rows_((camera.height + kTile_px - 1) / kTile_px),
       marked_(static_cast<std::size_t>(columns_ * rows_)) {
+  if (camera.has_distortion()) {  // which folds points far outside of the image back into it
+    marked_.assign(marked_.size(), true);
+    return;
+  }
   const std::vector<Bounds> vertices = vertex_bounds(mesh, camera, views);
   for (const std::array<std::uint32_t, 3>& corners : mesh.triangles) {
     Bounds triangle = vertices[corners[0]];

@@ -8,9 +8,12 @@
 #include <assimp/Importer.hpp>
 #include <bit>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -22,6 +25,8 @@ namespace stillpoint::synth {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr float kMostRepeats = 1e4F;  // of a texture
 
 Eigen::Vector3f vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
@@ -40,7 +45,8 @@ cv::Mat texture_image(const fs::path& file) {
   const auto side = [&](int px) {
     return std::min(kLargest_px, static_cast<int>(std::bit_ceil(static_cast<unsigned>(px))));
   };
-  cv::resize(image, image, cv::Size(side(image.cols), side(image.rows)));
+  const cv::Size size(side(image.cols), side(image.rows));
+  cv::resize(image, image, size, 0.0, 0.0, size.width < image.cols ? cv::INTER_AREA : cv::INTER_LINEAR);
   return image;
 }
 
@@ -95,6 +101,9 @@ class MeshCollector {
     std::array<Eigen::Vector3f, 3> p;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const aiVector3D& uv = mesh.mTextureCoords[0][face.mIndices[corner]];
+      if (!(std::abs(uv.x) < kMostRepeats && std::abs(uv.y) < kMostRepeats))
+        throw InputError(file_.string(),
+                         "has texture coordinates that are not finite or beyond 10000; repair the mesh");
       triangle.uv[corner] = {uv.x, 1.0F - uv.y};  // files count rows from the lower edge
       p[corner] = vector_of(mesh.mVertices[face.mIndices[corner]]);
     }
@@ -119,11 +128,64 @@ class MeshCollector {
   std::map<fs::path, int> textures_;
 };
 
+/// Lines of a text file, or of the header of a PLY; empty if it cannot be read.
+std::vector<std::string> text_lines(const fs::path& file) {
+  std::ifstream input(file, std::ios::binary);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(input, line) && line != "end_header" && line != "end_header\r";) {
+    if (line.ends_with('\r')) line.pop_back();
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+/// What follows a keyword at the begin of a line.
+std::vector<std::string> values_of(const fs::path& file, const std::string& keyword) {
+  std::vector<std::string> values;
+  for (const std::string& line : text_lines(file)) {
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string::npos || line.compare(begin, keyword.size(), keyword) != 0) continue;
+    const std::size_t value = line.find_first_not_of(" \t", begin + keyword.size());
+    if (value != std::string::npos) values.push_back(line.substr(value));
+  }
+  return values;
+}
+
+/// Assimp keeps coordinates per vertex, so that the last face of a vertex would determine those of all.
+void require_coordinates_of_vertices(const fs::path& file) {
+  if (file.extension() != ".ply") return;
+  for (const std::string& line : text_lines(file)) {
+    if (!line.starts_with("property list") || line.find("texcoord") == std::string::npos) continue;
+    throw InputError(file.string(),
+                     "has texture coordinates per face, which are not read; export it as OBJ, or with "
+                     "coordinates or colors per vertex");
+  }
+}
+
 }  // namespace
+
+std::vector<fs::path> companions_of_mesh(const fs::path& file) {
+  std::vector<fs::path> files;
+  const auto add = [&](const std::vector<std::string>& names) {
+    for (std::string name : names) {
+      std::ranges::replace(name, '\\', '/');
+      name = name.substr(name.find_last_of(' ') + 1);  // after options of a texture
+      if (fs::is_regular_file(file.parent_path() / name)) files.push_back(file.parent_path() / name);
+    }
+  };
+  if (file.extension() == ".ply") {
+    add(values_of(file, "comment TextureFile"));
+    return files;
+  }
+  add(values_of(file, "mtllib"));
+  for (const fs::path& materials : std::vector(files)) add(values_of(materials, "map_Kd"));
+  return files;
+}
 
 void read_mesh(const fs::path& file, World& world) {
   if (file.extension() != ".ply" && file.extension() != ".obj")
     throw InputError(file.string(), "is not named as a PLY or OBJ file; convert the mesh to .ply or .obj");
+  require_coordinates_of_vertices(file);
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFile(
       file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);

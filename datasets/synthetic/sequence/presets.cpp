@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "datasets/synthetic/scenes/mesh_file.h"
 #include "datasets/synthetic/sequence/recorded_motion.h"
 
 namespace stillpoint::synth {
@@ -211,7 +212,7 @@ void check_request(const SynthRequest& request) {
   if (request.layout == SequenceLayout::kOpenLoris && request.depth.units_per_m != 1000.0) {
     throw InputError("synth: depth.units_per_m",
                      "is not 1000, but the layout openloris has depth in millimeters; "
-                     "use the layout tum");
+                     "use the layout tum or --depth-units 1000");
   }
   require(request.depth.correlation_px >= 1, "depth.correlation_px", "1 or more");
   require(request.detector.miss_rate >= 0.0 && request.detector.miss_rate <= 0.9, "detector.miss_share",
@@ -288,8 +289,11 @@ std::string request_key(const SynthRequest& request) {
   nameless.mesh_file.clear();
   nameless.rig_file.clear();
   std::uint64_t hash = fnv1a(request_text(nameless), 0xcbf29ce484222325ULL);
-  for (const std::filesystem::path& file :
-       {request.trajectory_file, request.imu_file, request.times_file, request.mesh_file, request.rig_file}) {
+  std::vector<std::filesystem::path> files{request.trajectory_file, request.imu_file, request.times_file,
+                                           request.mesh_file, request.rig_file};
+  if (!request.mesh_file.empty())
+    std::ranges::move(companions_of_mesh(request.mesh_file), std::back_inserter(files));
+  for (const std::filesystem::path& file : files) {
     if (!file.empty()) hash = fnv1a(contents(file), hash);
   }
   return fmt::format("{:016x}", hash);

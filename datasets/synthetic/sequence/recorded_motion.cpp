@@ -230,20 +230,34 @@ std::vector<StampedPose> body_poses(const Trajectory& camera, const Pose& T_b_c,
 
 constexpr double kHandKnot_s = 0.05;
 
-/// Long enough for poses at any rate: each knot needs some. @throws InputError if there is a gap
-double knot_interval_s(const std::filesystem::path& file, const std::vector<StampedPose>& poses) {
-  constexpr double kGap_s = 0.5, kPosesPerKnot = 1.5;
-  double longest_s = 0.0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    const double interval_s = seconds_between(poses[i - 1].t, poses[i].t);
-    longest_s = std::max(longest_s, interval_s);
-    if (interval_s <= kGap_s) continue;
-    throw InputError(file.string(),
-                     fmt::format("has no pose for {:.1f} s after {:.3f} s; choose a part without "
-                                 "gaps with --start and --seconds",
-                                 interval_s, seconds_between(Timestamp{0}, poses[i - 1].t)));
+/// Intervals between poses, and those from the ends of the interval that they are to cover [s].
+std::vector<double> intervals_s(const std::vector<StampedPose>& poses, Timestamp from, Timestamp to) {
+  std::vector<double> intervals;
+  Timestamp before = from;
+  for (const StampedPose& pose : poses) {
+    intervals.push_back(seconds_between(before, pose.t));
+    before = pose.t;
   }
-  return std::max(kHandKnot_s, kPosesPerKnot * longest_s);
+  intervals.push_back(seconds_between(before, to));
+  return intervals;
+}
+
+/// Long enough for poses at any rate: each knot needs some. Motion capture at 100 Hz keeps the default.
+/// @throws InputError if there is a gap
+double knot_interval_s(const SynthRequest& request, std::vector<double> intervals) {
+  constexpr double kGap_s = 0.5, kLeastGap_s = 0.1, kMedians = 3.0, kPosesPerKnot = 1.5;
+  const double longest_s = std::ranges::max(intervals);
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  const double gap_s = is_mesh(request) ? std::clamp(kMedians * *middle, kLeastGap_s, kGap_s) : kGap_s;
+  if (longest_s > gap_s) {
+    throw InputError(
+        request.trajectory_file.string(),
+        fmt::format("has no pose for {:.2f} s, and one every {:.3f} s elsewhere; choose a part without "
+                    "gaps with --start and --seconds",
+                    longest_s, *middle));
+  }
+  return is_mesh(request) ? std::max(kHandKnot_s, kPosesPerKnot * longest_s) : kHandKnot_s;
 }
 
 /// Sets the mean position and direction of the camera.
@@ -276,10 +290,9 @@ HandRecording load_hand_recording(const SynthRequest& request, const PathRequest
             "ends {:.1f} s after the first frame, but {:.1f} s are required; reduce --seconds or --start",
             seconds_between(first, truth.poses.back().t), request.seconds));
   }
-  const std::vector<StampedPose> poses =
-      body_poses(truth, path.T_b_c, after(epoch, from_s), after(epoch, to_s));
-  SmootherConfig poses_only{.knot_interval_s = kHandKnot_s};
-  if (is_mesh(request)) poses_only.knot_interval_s = knot_interval_s(request.trajectory_file, poses);
+  const Timestamp from = after(epoch, from_s), to = after(epoch, to_s);
+  const std::vector<StampedPose> poses = body_poses(truth, path.T_b_c, from, to);
+  const SmootherConfig poses_only{.knot_interval_s = knot_interval_s(request, intervals_s(poses, from, to))};
   HandRecording recording{smooth_motion({poses, {}, epoch, from_s, to_s}, poses_only).path};
   recording.epoch = epoch;
   describe_view(truth, recording);

@@ -49,10 +49,12 @@ struct HandRecording {
 /// Loads and smooths the ground truth of a sequence of TUM RGB-D, poses T_w_c of the color camera at 100 Hz.
 /// The first frame is the first one at least `start_s` and 0.5 s after the first pose; it is at path time
 /// `first_frame_s`. Knots are 50 ms apart: motion above 10 Hz, where the noise of motion capture exceeds hand
-/// tremor, is removed. For the preset `mesh` they are farther apart if the poses are at less than 30 Hz.
+/// tremor, is removed. For the preset `mesh` they are as far apart as the poses need that are at less than 30
+/// Hz.
 /// @param request with its trajectory, and frame times if there are recorded ones
 /// @param path    pose of the camera in the body frame; interval of the result
-/// @throws InputError if a file cannot be read or does not cover the interval
+/// @throws InputError if a file cannot be read, does not cover the interval, or has a gap in it: 0.5 s; for
+/// `mesh` three times the median interval, at least 0.1 s
 [[nodiscard]] HandRecording load_hand_recording(const SynthRequest& request, const PathRequest& path,
                                                 double first_frame_s);
 

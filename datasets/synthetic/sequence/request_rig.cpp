@@ -3,11 +3,31 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/base/error.h"
 #include "datasets/calibration/rig_file.h"
 
 namespace stillpoint::synth {
 namespace {
+
+/// Rays are found by inverting the distortion, which strong coefficients do not allow near the border.
+void require_invertible(const std::filesystem::path& file, const Camera& camera) {
+  constexpr int kSteps = 16;
+  constexpr double kMostError_px = 0.01;
+  for (int row = 0; row <= kSteps; ++row) {
+    for (int column = 0; column <= kSteps; ++column) {
+      const Eigen::Vector2d pixel((camera.width - 1.0) * column / kSteps,
+                                  (camera.height - 1.0) * row / kSteps);
+      const Eigen::Vector3d ray = camera.unproject(pixel).homogeneous();
+      if (ray.allFinite() && (camera.project(ray) - pixel).norm() < kMostError_px) continue;
+      throw InputError(file.string(),
+                       fmt::format("its distortion has no ray for the pixel ({:.0f}, {:.0f}); use "
+                                   "coefficients that hold for the whole image",
+                                   pixel.x(), pixel.y()));
+    }
+  }
+}
 
 Rig read_rig(const std::filesystem::path& file, const Rig& defaults) {
   const datasets::OverriddenRig read = datasets::apply_rig_file(file, defaults);
@@ -20,6 +40,7 @@ Rig read_rig(const std::filesystem::path& file, const Rig& defaults) {
                      "has a depth camera of its own, but depth is rendered in the color camera; "
                      "remove all of [depth] but scale");
   }
+  require_invertible(file, read.rig.camera);
   return read.rig;
 }
 
@@ -42,7 +63,13 @@ Rig rig_of(const SynthRequest& request) {
                 .cx = 0.5 * (request.width - 1),
                 .cy = 0.5 * (request.height - 1)};
   rig.T_b_c = realsense_T_b_c();
-  if (!request.rig_file.empty()) rig = read_rig(request.rig_file, rig);
+  if (!request.rig_file.empty()) {
+    rig = read_rig(request.rig_file, rig);
+    if (rig.camera.width != request.width || rig.camera.height != request.height) {
+      throw InputError(request.rig_file.string(),
+                       "states another image size than the request; take it by use_rig");
+    }
+  }
   rig.depth_units_per_m = request.depth.units_per_m;
   rig.has_imu = request.layout == SequenceLayout::kOpenLoris;
   rig.imu_noise = request.imu.noise;

@@ -113,7 +113,7 @@ void SequenceWriter::write_rig(const Rig& rig, const SynthRequest& request) cons
         "rig.toml",
         fmt::format("[camera]\nwidth = {}\nheight = {}\nfx = {:.9f}\nfy = {:.9f}\ncx = {:.9f}\ncy = {:.9f}\n"
                     "model = \"radial-tangential\"\ndistortion = [{:#}]\n\n"
-                    "[depth]\nscale = {:.1f}\n",
+                    "[depth]\nscale = {:#}\n",
                     camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy,
                     fmt::join(camera.coefficients(), ", "), rig.depth_units_per_m));
     return;

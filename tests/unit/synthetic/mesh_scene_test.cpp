@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -167,6 +168,10 @@ TEST(MeshFile, WhatCannotBeRenderedIsNamed) {
   expect(folder.write("text.ply", "not a mesh\n"), {"text.ply", "cannot be read as a mesh"});
   expect(folder.path() / "none.obj", {"none.obj", "cannot be read as a mesh"});
   expect(folder.write("scan.stl", "solid\n"), {"scan.stl", ".ply or .obj"});
+  expect(folder.write("seam.ply",
+                      header + "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar "
+                               "float texcoord\nend_header\n"),
+         {"seam.ply", "per face", "OBJ"});
   folder.write("lost.mtl", "newmtl wall\nmap_Kd none.png\n");
   expect(folder.write("lost.obj",
                       "mtllib lost.mtl\nv 2 1 -1\nv 2 -1 -1\nv 2 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\n"
@@ -251,25 +256,48 @@ TEST(MeshScene, RigsThatAreNotRenderedAreNamed) {
       {"rig.toml", "depth camera"});
 }
 
+/// 6 s of a path with a pose every `step` tenths of a second, without those from `gap_from` to `gap_to` [s].
+std::string path_with_gap(double step, double gap_from, double gap_to) {
+  std::string text;
+  for (double t = 0.0; t <= 6.0; t += step) {
+    if (t > gap_from && t < gap_to) continue;
+    text += fmt::format("{:.4f} -1.5 {:.4f} 1.5 -0.5 0.5 -0.5 0.5\n", 50.0 + t, 0.2 * t - 0.6);
+  }
+  return text;
+}
+
 TEST(MeshScene, ThePathMayBeAtALowRateButNotHaveGaps) {
   const TemporaryFolder folder;
   SynthRequest request = mesh_request(folder, 0.0);
-  std::string slow, gap;
-  for (int i = 0; i <= 60; ++i) {
-    const std::string line =
-        fmt::format("{:.4f} -1.5 {:.4f} 1.5 -0.5 0.5 -0.5 0.5\n", 50.0 + 0.1 * i, 0.02 * i - 0.6);
-    slow += line;
-    if (i < 10 || i > 16) gap += line;
-  }
-  request.trajectory_file = folder.write("slow.txt", slow);
+  request.trajectory_file = folder.write("slow.txt", path_with_gap(0.1, 9.0, 9.0));
   const SceneSetup setup = make_scene_setup(request);
   constexpr double kAt_s = 0.15;
   const Pose T_w_c = setup.body_path.pose_at(kAt_s) * setup.rig.T_b_c;
-  EXPECT_NEAR(T_w_c.p.y(), -0.6 + 0.2 * seconds_between(Timestamp{50'000'000'000}, setup.epoch) + 0.2 * kAt_s,
+  EXPECT_NEAR(T_w_c.p.y(), -0.6 + 0.2 * (seconds_between(Timestamp{50'000'000'000}, setup.epoch) + kAt_s),
               1e-3);
-  request.trajectory_file = folder.write("gap.txt", gap);
   request.seconds = 2.0;
-  expect_input_error([&] { static_cast<void>(make_scene_setup(request)); }, {"gap.txt", "0.8 s", "--start"});
+  // In the middle, at the end, over the whole of what is rendered, and one that a slow path may have.
+  for (const std::string& text : {path_with_gap(0.1, 1.0, 1.7), path_with_gap(1.0 / 30.0, 2.0, 5.0),
+                                  path_with_gap(1.0 / 30.0, 0.1, 5.0), path_with_gap(1.0 / 30.0, 1.0, 1.2)}) {
+    request.trajectory_file = folder.write("gap.txt", text);
+    expect_input_error([&] { static_cast<void>(make_scene_setup(request)); },
+                       {"gap.txt", "no pose", "--start"});
+  }
+}
+
+TEST(MeshScene, TheKeyOfARenderingDependsOnTexturesToo) {
+  const TemporaryFolder folder;
+  SynthRequest request = mesh_request(folder, 0.0);
+  request.mesh_file = folder.write("wall.obj", "mtllib wall.mtl\nv 0 0 0\n");
+  folder.write("wall.mtl", "newmtl wall\n  map_Kd -clamp on wall.png\n");
+  std::set<std::string> keys;
+  for (const char* image : {"red", "blue"}) {
+    folder.write("wall.png", image);
+    keys.insert(request_key(request));
+  }
+  folder.write("wall.mtl", "newmtl other\n");
+  keys.insert(request_key(request));
+  EXPECT_EQ(keys.size(), 3U);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Folders of trajectories, as other benchmarks keep them, as runs of a store: each estimate is scored
-/// against the ground truth of its sequence like a run of a plan. Written from the documentation of these
+/// against the ground truth of its sequence like a run of a plan. Written from public descriptions of these
 /// tools and tested with made-up files; no file that a tool wrote was available.
 ///
 ///   ov_eval    algorithms/SYSTEM/SEQUENCE/RUN.txt; truth/SEQUENCE.txt or truths/SEQUENCE.txt
