@@ -66,5 +66,16 @@ report < <(large_functions)
 report < <(sources | grep -v '^tests/' | xargs --no-run-if-empty -n1 dirname | sort | uniq -c |
   awk '$1 > 20 { print $2 ": more than 20 files" }')
 
+# A test that no target contains is never executed. A target without SOURCES, or with those of a GLOB, takes all.
+unlisted_tests() {
+  find tests -name CMakeLists.txt | sort | while read -r list; do
+    awk 'BEGIN { RS = "stillpoint_test\\(" } /GLOB/ || (NR > 1 && !/SOURCES/) { all = 1 } END { exit NR < 2 || all }' "$list" || continue
+    for test in "${list%/*}"/*_test.cpp; do
+      [[ ! -e "$test" ]] || grep -qF -- "${test##*/}" "$list" || echo "$test"
+    done
+  done
+}
+complain "no test program contains it" < <(unlisted_tests)
+
 ((faults == 0)) || { echo "style: $faults fault(s)"; exit 1; }
 echo "style: clean"

@@ -108,18 +108,40 @@ std::string encode_jpeg_message(const FoxgloveHeader& header, std::string_view j
       .take();
 }
 
-std::string encode_deep_image(const FoxgloveHeader& header, int width,
-                              std::span<const std::uint16_t> pixels) {
-  const auto columns = static_cast<std::uint32_t>(width);
+namespace {
+
+/// Rows without padding.
+struct RawRows {
+  std::string_view encoding;
+  int columns;
+  std::size_t pixel_bytes;
+  std::string_view bytes;
+};
+
+std::string encode_raw_image(const FoxgloveHeader& header, const RawRows& rows) {
+  const std::size_t row_bytes = static_cast<std::size_t>(rows.columns) * rows.pixel_bytes;
   return ProtobufWriter()
       .bytes(1, encode_timestamp(header.t))
-      .fixed32(2, columns)
-      .fixed32(3, static_cast<std::uint32_t>(pixels.size() / columns))
-      .bytes(4, "16UC1")
-      .fixed32(5, static_cast<std::uint32_t>(columns * sizeof(std::uint16_t)))
-      .bytes(6, {reinterpret_cast<const char*>(pixels.data()), pixels.size_bytes()})
+      .fixed32(2, static_cast<std::uint32_t>(rows.columns))
+      .fixed32(3, static_cast<std::uint32_t>(rows.bytes.size() / row_bytes))
+      .bytes(4, rows.encoding)
+      .fixed32(5, static_cast<std::uint32_t>(row_bytes))
+      .bytes(6, rows.bytes)
       .bytes(7, header.frame)
       .take();
+}
+
+}  // namespace
+
+std::string encode_deep_image(const FoxgloveHeader& header, int width,
+                              std::span<const std::uint16_t> pixels) {
+  const std::string_view bytes{reinterpret_cast<const char*>(pixels.data()), pixels.size_bytes()};
+  return encode_raw_image(header, {"16UC1", width, sizeof(std::uint16_t), bytes});
+}
+
+std::string encode_mono_image(const FoxgloveHeader& header, int width, std::span<const std::uint8_t> pixels) {
+  const std::string_view bytes{reinterpret_cast<const char*>(pixels.data()), pixels.size()};
+  return encode_raw_image(header, {"mono8", width, 1, bytes});
 }
 
 std::string encode_annotations(Timestamp t, std::span<const AnnotatedPoints> annotations) {

@@ -49,6 +49,11 @@ struct FoxgloveHeader {
 [[nodiscard]] std::string encode_deep_image(const FoxgloveHeader& header, int width,
                                             std::span<const std::uint16_t> pixels);
 
+/// foxglove.RawImage of the encoding mono8.
+/// @param pixels rows without padding
+[[nodiscard]] std::string encode_mono_image(const FoxgloveHeader& header, int width,
+                                            std::span<const std::uint8_t> pixels);
+
 /// Red, green, blue in [0, 255].
 struct MessageColor {
   std::uint8_t r = 0, g = 0, b = 0;

@@ -147,6 +147,27 @@ std::string depth_message(const Frame& frame) {
                                      {millimeters.ptr<std::uint16_t>(), millimeters.total()});
 }
 
+/// 255 where the measured depth belongs to an object, by the boxes.
+std::string mask_message(const FrameReport& report) {
+  const Frame& frame = report.frame;
+  cv::Mat mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
+  for (const SemanticMask::MaskedBox& masked : report.dynamic.mask.boxes()) {
+    const cv::Rect area =
+        cv::Rect(cv::Point(static_cast<int>(masked.box.x_min), static_cast<int>(masked.box.y_min)),
+                 cv::Point(static_cast<int>(masked.box.x_max) + 1, static_cast<int>(masked.box.y_max) + 1)) &
+        cv::Rect({}, mask.size());
+    for (int row = area.y; row < area.br().y; ++row) {
+      for (int column = area.x; column < area.br().x; ++column) {
+        const double depth_m = frame.depth.at<std::uint16_t>(row, column) / frame.depth_units_per_m;
+        if (depth_m > 0.0 && report.dynamic.mask.covers({column, row}, depth_m))
+          mask.at<std::uint8_t>(row, column) = 255;
+      }
+    }
+  }
+  return datasets::encode_mono_image({frame.t, kCameraFrame}, mask.cols,
+                                     {mask.ptr<std::uint8_t>(), mask.total()});
+}
+
 }  // namespace
 
 struct RunRecording::Impl {
@@ -194,13 +215,16 @@ struct RunRecording::Impl {
     channels.write_transform({t, kMapFrame}, world_frame(update.segment), update.T_m_w);
   }
 
-  void write_images(const Frame& frame) {
+  void write_images(const FrameReport& report) {
+    const Frame& frame = report.frame;
     const cv::Mat color = color_image(frame);
     channels.write("/camera/image", "foxglove.CompressedImage", frame.t,
                    datasets::encode_jpeg_message({frame.t, kCameraFrame},
                                                  datasets::encode_jpeg(color.empty() ? frame.gray : color)));
     if (!frame.depth.empty())
       channels.write("/camera/depth", "foxglove.RawImage", frame.t, depth_message(frame));
+    if (!frame.depth.empty() && !report.dynamic.labels.empty())
+      channels.write("/camera/mask", "foxglove.RawImage", frame.t, mask_message(report));
   }
 
   const datasets::SequenceInfo& info;
@@ -246,7 +270,7 @@ void RunRecording::add(const FrameReport& report) {
   impl_->channels.write("/timings", "stillpoint.Timings", t, timings_message(report));
   impl_->channels.write("/camera/annotations", "foxglove.ImageAnnotations", t, annotations_message(report));
   impl_->channels.write("/landmarks", "foxglove.PointCloud", t, landmarks_message(report));
-  if (impl_->images == RecordedImages::kColorAndDepth) impl_->write_images(report.frame);
+  if (impl_->images == RecordedImages::kColorAndDepth) impl_->write_images(report);
 }
 
 void RunRecording::finish(const bench::LoopRun* loops) {

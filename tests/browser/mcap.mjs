@@ -169,7 +169,8 @@ topics["/camera/annotations"].forEach(({ points, texts }) => {
       recordedLabels.push(...pixels.map(({ x, y }) => `${label} ${(x - 0.5).toFixed(2)} ${(y - 0.5).toFixed(2)}`));
   }
 });
-const labels = (await records(`${RUN}/labels.csv`)).map((row) => `${row.label} ${row.u_px} ${row.v_px}`);
+const features = await records(`${RUN}/labels.csv`);
+const labels = features.map((row) => `${row.label} ${row.u_px} ${row.v_px}`);
 assert.ok(labels.some((text) => text.startsWith("dynamic_object")) && labels.length > 1000);
 assert.equal(recordedLabels.length, labels.length);
 // A few pixels are rounded to another hundredth: 0.5 was added and subtracted.
@@ -232,6 +233,15 @@ if (IMAGES) {
   for (const { data, width, height, step, encoding } of topics["/camera/depth"])
     assert.deepEqual([width, height, step, encoding, data.length], [320, 240, 640, "16UC1", 320 * 240 * 2]);
   assert.equal(count("/camera/depth"), claims.length);
+  // The mask covers the features that were taken for dynamic by it, with measured depth, at their nearest pixels.
+  const masks = new Map(topics["/camera/mask"].map((mask) => [secondsOf(mask.timestamp), mask]));
+  for (const { data, width, height, step, encoding } of masks.values()) {
+    assert.deepEqual([width, height, step, encoding, data.length], [320, 240, 320, "mono8", 320 * 240]);
+    assert.ok(data.every((value) => value === 0 || value === 255));
+  }
+  const covered = features.filter(({ reason, depth_m }) => reason === "inside_mask" && Number(depth_m) > 0)
+    .map(({ t, u_px, v_px }) => masks.get(t).data[Math.round(v_px) * 320 + Math.round(u_px)] === 255);
+  assert.ok(covered.length > 100 && covered.filter((is) => is).length > 0.9 * covered.length, `${covered.filter((is) => is).length} of ${covered.length}`);
   assert.equal(topics["/estimate/optimized"][0].poses.length, trajectory.length);
   // The layout names topics and fields of this recording.
   const layout = await readFile(new URL("../../bench/viewers/foxglove.json", import.meta.url), "utf8");

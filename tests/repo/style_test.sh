@@ -26,6 +26,12 @@ put core/imu/detail/a.cpp "$licence"
 expect_clean style.sh "a folder of 20 files, and one below it"
 put core/imu/a21.cpp "$licence"
 expect_fault style.sh "core/imu: more than 20 files" "a folder of 21 files"
+tree_with tests/unit/imu/b_test.cpp "$licence"
+put tests/unit/imu/CMakeLists.txt 'stillpoint_test(imu_test fast LIBRARIES stillpoint_imu)'
+expect_clean style.sh "a test program of all files of a folder"
+put tests/unit/imu/CMakeLists.txt 'stillpoint_test(imu_test fast
+  SOURCES a_test.cpp)'
+expect_fault style.sh "tests/unit/imu/b_test.cpp: no test program contains it" "a test without a program"
 tree_with core/imu/a.cpp "$licence
 using namespace std;"
 expect_fault style.sh "core/imu/a.cpp: using namespace at file scope" "using namespace"

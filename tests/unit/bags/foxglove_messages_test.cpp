@@ -72,6 +72,18 @@ TEST(FoxgloveMessages, ADeepImageHasItsSizeAndPixels) {
   EXPECT_EQ(fields[6].bytes, std::string("\1\0\0\1\xff\xff\4\0\5\0\6\0", 12));
 }
 
+TEST(FoxgloveMessages, MasksHaveOneByteAPixel) {
+  constexpr std::array<std::uint8_t, 6> kPixels = {0, 255, 0, 1, 2, 3};
+  const std::string bytes = encode_mono_image({{5}, "camera"}, 3, kPixels);
+  ProtobufReader reader(bytes, "file");
+  std::map<int, ProtobufField> fields;
+  while (const auto field = reader.next()) fields[field->number] = *field;
+  EXPECT_EQ(fields[3].value, 2U);  // height
+  EXPECT_EQ(fields[4].bytes, "mono8");
+  EXPECT_EQ(fields[5].value, 3U);  // bytes of a row
+  EXPECT_EQ(fields[6].bytes, std::string("\0\xff\0\1\2\3", 6));
+}
+
 TEST(FoxgloveMessages, PosesOfAnMcapFileAreReadAsATrajectory) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "run.mcap";
