@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Packs the evaluation of the package into a wheel: stillpoint.eval and what runs the program; no library but numpy.
+"""Packs the package into a wheel: stillpoint.eval and what runs the program, with no library but numpy; or, with "full", all of it.
 
-make_wheel.py PACKAGE_FOLDER VERSION LICENSE OUT_FOLDER
+make_wheel.py PACKAGE_FOLDER VERSION LICENSE OUT_FOLDER [full]
 """
 
 import base64
@@ -15,11 +15,25 @@ FILES = ("__init__.py", "eval.py", "runs.py", "_eval.pyi", "py.typed")
 METADATA = """Metadata-Version: 2.1
 Name: stillpoint
 Version: {version}
-Summary: Evaluation of trajectories of SLAM systems: association, alignment, metrics and protocols
-License: BSD-3-Clause AND MPL-2.0
+Summary: {summary}
+License: {license}
 Requires-Python: >={python}
 Requires-Dist: numpy
-"""
+{description}"""
+EVALUATION = {
+    "summary": "Evaluation of trajectories of SLAM systems: association, alignment, metrics and protocols",
+    "license": "BSD-3-Clause AND MPL-2.0",
+    "description": "",
+}
+FULL = {
+    "summary": "RGB-D inertial odometry in dynamic scenes, its evaluation and its benchmarks",
+    "license": "GPL-2.0-or-later",
+    "description": """
+The sources of this package are under the BSD license. Its odometry is linked with SuiteSparse, parts of which (the supernodal
+module of CHOLMOD, SPQR) are under the GPL: the GPL applies to this wheel as a whole when it is redistributed. It uses the shared
+libraries of the system on which it was built, and is for that system only.
+""",
+}
 
 
 def record_line(name, data):
@@ -29,13 +43,16 @@ def record_line(name, data):
 
 def main():
     package, version, license_file, out = Path(sys.argv[1]), sys.argv[2], Path(sys.argv[3]), Path(sys.argv[4])
+    full = sys.argv[5:] == ["full"]
+    version += "+full" if full else ""
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
     tag = f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
     info = f"stillpoint-{version}.dist-info"
-    contents = {f"stillpoint/{name}": (package / name).read_bytes() for name in FILES}
-    extension = package / f"_eval{sysconfig.get_config_var('EXT_SUFFIX')}"
-    contents[f"stillpoint/{extension.name}"] = extension.read_bytes()
-    contents[f"{info}/METADATA"] = METADATA.format(version=version, python=".".join(map(str, sys.version_info[:2]))).encode()
+    suffix = sysconfig.get_config_var("EXT_SUFFIX")
+    names = sorted(path.name for path in package.iterdir() if path.is_file()) if full else (*FILES, f"_eval{suffix}")
+    contents = {f"stillpoint/{name}": (package / name).read_bytes() for name in names}
+    metadata = METADATA.format(version=version, python=".".join(map(str, sys.version_info[:2])), **(FULL if full else EVALUATION))
+    contents[f"{info}/METADATA"] = metadata.encode()
     contents[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: stillpoint\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     contents[f"{info}/LICENSE"] = license_file.read_bytes()
     record = "".join(record_line(name, data) for name, data in contents.items()) + f"{info}/RECORD,,\n"

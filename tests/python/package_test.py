@@ -5,6 +5,7 @@ import ast
 import importlib
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -90,6 +91,18 @@ def test_wheel_installs_in_a_new_environment_and_runs_an_example():
     done = subprocess.run([root / "scripts" / "wheel.sh", FOLDER.parents[1], "--test"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "ATE 0.0000 m" in done.stdout and "is not part of this installation" in done.stdout
+
+
+def test_full_wheel_feeds_the_odometry():
+    root = Path(__file__).resolve().parents[2]
+    command = [root / "scripts" / "wheel.sh", FOLDER.parents[1], "--full", "--test"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "features dynamic" in done.stdout
+    wheel = next(line.removeprefix("wheel: ") for line in done.stdout.splitlines() if line.startswith("wheel: "))
+    with zipfile.ZipFile(wheel if Path(wheel).is_absolute() else root / wheel) as archive:
+        metadata = archive.read(next(name for name in archive.namelist() if name.endswith("/METADATA"))).decode()
+    assert "License: GPL-2.0-or-later" in metadata and "SuiteSparse" in metadata
 
 
 @pytest.mark.parametrize("arguments, message", [(["--tests"], "unknown option"), (["/no/such/build"], "has no Python package")])
