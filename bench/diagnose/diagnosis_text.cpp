@@ -90,7 +90,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
 
 std::string diagnosis_json(const Diagnosis& diagnosis) {
   const nlohmann::ordered_json json = {
-      {"schema", 1},
+      {"schema", 2},
       {"sequence", diagnosis.sequence},
       {"measure", diagnosis.measure == ErrorMeasure::kTruth ? "ate" : "inconsistency"},
       {"frames", diagnosis.frames},

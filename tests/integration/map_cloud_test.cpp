@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `run --map-cloud`, `data cloud` and `eval cloud`: the map of a room with five walking people against the
 // rendered room without them.
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <tuple>
@@ -100,6 +101,31 @@ TEST(MapCloud, TheMapOfARoomWithFiveWalkersIsThatOfTheEmptyRoom) {
       run_program({"run", walkers.string(), "--out", (folder.path() / "again").string(), "--map-cloud", map})
           .exit_code,
       2);  // the file exists
+}
+
+TEST(MapCloud, WithLoopClosureItIsThatOfTheOptimizedTrajectory) {
+  const TemporaryFolder folder;
+  const fs::path sequence = folder.path() / "walk";
+  render("walking_xyz_empty", sequence, {});
+  const auto run = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"run",         sequence.string(),
+                                          "--out",       (folder.path() / name).string(),
+                                          "--map-cloud", (folder.path() / (name + ".ply")).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    execute(arguments);
+    return eval::read_ply(folder.path() / (name + ".ply"));
+  };
+  const std::vector<eval::CloudPoint> odometry = run("odometry", {});
+  const std::vector<eval::CloudPoint> optimized = run("optimized", {"--variant", "ablations/loop_closure"});
+  // Frames are loaded again with the masks that they had: as many points, elsewhere by the correction only.
+  EXPECT_NEAR(static_cast<double>(optimized.size()), static_cast<double>(odometry.size()),
+              0.05 * static_cast<double>(odometry.size()));
+  std::vector<Eigen::Vector3f> points;
+  for (const eval::CloudPoint& point : odometry) points.push_back(point.p);
+  const eval::PointTree tree(points);
+  const auto near = std::ranges::count_if(
+      optimized, [&](const eval::CloudPoint& point) { return tree.distance(point.p) < 0.03; });
+  EXPECT_GT(static_cast<double>(near), 0.95 * static_cast<double>(optimized.size()));
 }
 
 }  // namespace

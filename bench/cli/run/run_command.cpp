@@ -200,7 +200,8 @@ DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& con
           .mcap = arguments.mcap,
           .mcap_images = arguments.mcap_images,
           .map_cloud = arguments.map_cloud,
-          .map_voxel_m = arguments.map_voxel_m};
+          .map_voxel_m = arguments.map_voxel_m,
+          .closes_loops = configured.spec.config.loop.enabled};
 }
 
 /// Log, progress line, heartbeat, and the meters of the machine during a run.
@@ -362,7 +363,7 @@ int run(const std::shared_ptr<const RunArguments>& shared) {
   int code = kExitOk;
   for (const ConfiguredRun& configured : with_folders(runs, arguments, info)) {
     if (interrupt_requested()) return kExitInterrupted;
-    RunDumps dumps(dump_request(arguments, configured), info, configured.spec.config.frontend);
+    RunDumps dumps(dump_request(arguments, configured), *stream, configured.spec.config.frontend);
     std::optional<RunWatch> watch(std::in_place, info, arguments, configured);
     const double start_s = process_age_s();
     OdometryRun executed = run_odometry(*stream, configured.spec, control_of(*watch, dumps));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/run/run_dumps.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -61,8 +62,9 @@ void require_known_dumps(const std::vector<std::string>& names) {
   }
 }
 
-RunDumps::RunDumps(DumpRequest request, const datasets::SequenceInfo& info, const FrontendConfig& frontend)
-    : request_(std::move(request)) {
+RunDumps::RunDumps(DumpRequest request, const datasets::SensorStream& stream, const FrontendConfig& frontend)
+    : request_(std::move(request)), stream_(stream) {
+  const datasets::SequenceInfo& info = stream.info();
   const report::AnnotationStyle style = report::annotation_style(frontend);
   if (!request_.video.empty()) video_.emplace(request_.video, style, report::mean_rate_hz(info.frame_times));
   if (request_.images > 0)
@@ -89,16 +91,41 @@ bool RunDumps::attempt(const char* name, const Action& action) {
   }
 }
 
+namespace {
+
+void fuse(datasets::VoxelMap& map, const Frame& frame, const Pose& T_w_c, const SemanticMask& mask) {
+  map.add(frame, T_w_c, [&mask](int column, int row, double depth_m) {
+    return depth_m < mask.threshold_at(Eigen::Vector2d(column, row));
+  });
+}
+
+}  // namespace
+
 void RunDumps::add_to_map(const FrameReport& report) {
   constexpr double kInterval_s = 0.095;  // 10 Hz, with jitter
   const OdometryUpdate& update = report.update;
-  if (!is_located(update.status) || update.segment != 0 || report.dynamic.labels.empty()) return;
+  const bool in_one_world = update.segment == 0 || request_.closes_loops;
+  if (!is_located(update.status) || !in_one_world || report.dynamic.labels.empty()) return;
   if (map_t_ && seconds_between(*map_t_, report.frame.t) < kInterval_s) return;
   map_t_ = report.frame.t;
-  const SemanticMask& mask = report.dynamic.mask;
-  map_->add(report.frame, update.T_w_c, [&mask](int column, int row, double depth_m) {
-    return depth_m < mask.threshold_at(Eigen::Vector2d(column, row));
-  });
+  if (request_.closes_loops) {
+    map_frames_.push_back({report.tracked.id, report.frame.t, update.T_w_c, report.dynamic.mask});
+  } else {
+    fuse(*map_, report.frame, update.T_w_c, report.dynamic.mask);
+  }
+}
+
+void RunDumps::fuse_optimized(const LoopRun* loops) {
+  for (const MapFrame& kept : map_frames_) {
+    Pose T_w_c = kept.T_w_c;
+    if (loops != nullptr) {
+      const std::vector<StampedPose>& poses = loops->optimized.poses;
+      const auto found = std::ranges::lower_bound(poses, kept.t, {}, &StampedPose::t);
+      if (found == poses.end() || found->t != kept.t) continue;  // of a world that is not located in the map
+      T_w_c = found->T_w_f;
+    }
+    fuse(*map_, stream_.load_frame(static_cast<std::size_t>(kept.index)), T_w_c, kept.mask);
+  }
 }
 
 void RunDumps::add(const FrameReport& report) {
@@ -114,7 +141,12 @@ std::vector<std::string> RunDumps::finish(const OdometryRun* run) {
   const LoopRun* const loops = run != nullptr && run->loops ? &*run->loops : nullptr;
   if (video_) attempt("--video", [&] { video_->finish(); });
   if (recording_) attempt("--mcap", [&] { recording_->finish(loops); });
-  if (map_) attempt("--map-cloud", [&] { write_cloud(request_.map_cloud, map_->cloud()); });
+  if (map_) {
+    attempt("--map-cloud", [&] {
+      fuse_optimized(loops);
+      write_cloud(request_.map_cloud, map_->cloud());
+    });
+  }
   if (request_.labels)
     attempt("--dump labels", [&] { write_files(request_.folder, {{kLabelsFile, labels_.text()}}); });
   if (request_.images > 0)

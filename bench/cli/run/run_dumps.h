@@ -3,6 +3,7 @@
 /// video, a recording for viewers and a point cloud. None of their failures affects the run or its result.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -44,6 +45,7 @@ struct DumpRequest {
   bool mcap_images = false;         ///< the recording contains color and depth images
   std::filesystem::path map_cloud;  ///< point cloud of static surfaces; empty = none
   double map_voxel_m = 0.02;        ///< side of its voxels
+  bool closes_loops = false;        ///< the cloud is that of the optimized trajectory
 };
 
 /// Values of --dump. @throws InputError for a name that is not one of them
@@ -53,8 +55,10 @@ void require_known_dumps(const std::vector<std::string>& names);
 class RunDumps {
  public:
   /// Creates the folders and the recording, so that unusable ones are reported before the run.
+  /// @param stream must outlive this object; its frames are loaded again for the cloud of an optimized
+  /// trajectory
   /// @throws InputError if one of them cannot be created
-  RunDumps(DumpRequest request, const datasets::SequenceInfo& info, const FrontendConfig& frontend);
+  RunDumps(DumpRequest request, const datasets::SensorStream& stream, const FrontendConfig& frontend);
 
   /// Whether `add` has to be called with the frames.
   [[nodiscard]] bool needs_frames() const {
@@ -70,15 +74,27 @@ class RunDumps {
   [[nodiscard]] std::vector<std::string> finish(const OdometryRun* run);
 
  private:
+  /// A frame of the map.
+  struct MapFrame {
+    std::int64_t index = 0;
+    Timestamp t;
+    Pose T_w_c;
+    SemanticMask mask;
+  };
+
   /// Adds a frame that entered the window and is located in the first world to the map, up to ten per second,
-  /// without the pixels in the semantic mask.
+  /// without the pixels in the semantic mask. With loop closure the frame is kept for `fuse_optimized`.
   void add_to_map(const FrameReport& report);
+  /// Adds the kept frames at their optimized poses; without loops, because the run was interrupted, at those
+  /// that they had.
+  void fuse_optimized(const LoopRun* loops);
 
   /// Calls `action`. @return whether it succeeded
   template <class Action>
   bool attempt(const char* name, const Action& action);
 
   DumpRequest request_;
+  const datasets::SensorStream& stream_;
   LabelDump labels_;
   std::optional<report::RunVideo> video_;
   std::optional<report::WorstFrames> worst_frames_;
@@ -86,6 +102,7 @@ class RunDumps {
   std::optional<report::RunRecording> recording_;
   std::optional<datasets::VoxelMap> map_;
   std::optional<Timestamp> map_t_;  ///< of the last frame in the map
+  std::vector<MapFrame> map_frames_;
   std::vector<std::string> failures_;
 };
 
