@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <system_error>
 
@@ -13,8 +14,14 @@
 namespace stillpoint::bench {
 
 TemporaryPath::TemporaryPath(Kind kind, const std::string& purpose) {
-  std::string name =
-      (std::filesystem::temp_directory_path() / ("stillpoint-" + purpose + "-XXXXXX")).string();
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (error) {
+    const char* const set = std::getenv("TMPDIR");
+    throw InputError(set == nullptr ? "TMPDIR" : "TMPDIR=" + std::string(set),
+                     "is no folder for temporary files; set it to one");
+  }
+  std::string name = (folder / ("stillpoint-" + purpose + "-XXXXXX")).string();
   bool is_created = false;
   if (kind == Kind::kFolder) {
     is_created = mkdtemp(name.data()) != nullptr;

@@ -133,6 +133,9 @@ TEST(StoreImport, AContradictingOrUnknownResultOfEvoIsAnError) {
                               {.environment = {"TMPDIR=" + (folder.path() / "tmp").string()}}),
                   {"damaged.zip"});
   EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "tmp"));
+  expect_rejected(run_program({"store", "import", damaged, "--store", store},
+                              {.environment = {"TMPDIR=" + (folder.path() / "none").string()}}),
+                  {"TMPDIR=", "no folder for temporary files"});
 }
 
 /// How the rows of a made-up trajectory are written.

@@ -36,24 +36,16 @@ double width_mm(const std::string& text) {
   return *number;
 }
 
-/// @throws InputError naming the option if no value of the enum has this name
-template <typename Enum>
-Enum value_named(const std::string& name, const char* option, const char* other_values = "") {
-  for (const auto& [value, known] : enum_names(Enum{})) {
-    if (name == known) return value;
-  }
-  throw InputError(option, fmt::format("unknown value \"{}\"; expected one of: {}{}", name, enum_list<Enum>(),
-                                       other_values));
-}
-
 /// The kinds of --figure, "all" being all; without any, path and errors.
 std::vector<report::FigureKind> figure_kinds(const EvalArguments& arguments) {
   std::vector<report::FigureKind> kinds;
   for (const std::string& name : arguments.figures) {
-    if (name == "all") {
-      for (const auto& [kind, known] : enum_names(report::FigureKind{})) kinds.push_back(kind);
-    } else {
-      kinds.push_back(value_named<report::FigureKind>(name, "--figure", ", all"));
+    const std::size_t before = kinds.size();
+    for (const auto& [kind, known] : enum_names(report::FigureKind{}))
+      if (name == "all" || name == known) kinds.push_back(kind);
+    if (kinds.size() == before) {
+      throw InputError("--figure", fmt::format("unknown value \"{}\"; expected one of: {}, all", name,
+                                               enum_list<report::FigureKind>()));
     }
   }
   if (kinds.empty()) kinds = {report::FigureKind::kPath, report::FigureKind::kError};
@@ -64,7 +56,7 @@ std::vector<report::FigureKind> figure_kinds(const EvalArguments& arguments) {
 report::PathOptions path_options(const EvalArguments& arguments) {
   report::PathOptions options{.least_error_m = arguments.colormap_min_m};
   if (!arguments.plot_mode.empty())
-    options.mode = value_named<report::PlotMode>(arguments.plot_mode, "--plot-mode");
+    options.mode = enum_of<report::PlotMode>("--plot-mode", arguments.plot_mode);
   for (const std::string& mark : arguments.path_marks) {
     if (mark != "axes" && mark != "correspondences") {
       throw InputError("--path-mark",

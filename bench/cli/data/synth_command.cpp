@@ -23,9 +23,7 @@ constexpr const char* kPresets =
     "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; fr3, "
     "fr3_{walking_{xyz,static,rpy,halfsphere},sitting_static}; track; flight"
     " (all recorded motion); mesh (a scan, the default with --mesh); with returns to places: "
-    "{office,corridor,market}_laps, twin_aisles, "
-    "changed_room, "
-    "each also with _short; home_tour";
+    "{office,corridor,market}_laps, twin_aisles, changed_room, each also with _short; home_tour";
 constexpr double kPresetValue = -1.0;  // option not given: use the value of the preset
 
 /// Command line arguments of `data synth`.
@@ -181,9 +179,9 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--mesh", "Scanned scene (PLY or OBJ with colors, meters, z up) instead of that of a preset",
        &arguments.mesh},
       {"--rig",
-       "Calibration and noise of the rendered sensors: rig.toml, or YAML of other programs; its time offset "
-       "and "
-       "read-out time are rendered, but not written",
+       "Calibration and noise of the sensors: rig.toml, or YAML of other programs; its time offset and "
+       "read-out "
+       "time are rendered, but not written",
        &arguments.rig},
       {"--times", "Recorded frame times, one per line [s]; a third field is the time of the depth image",
        &arguments.times},
