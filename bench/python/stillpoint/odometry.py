@@ -7,12 +7,8 @@
     update.status, update.T_w_c, update.covariance, odometry.features()["label"]
 """
 
-import subprocess
-import tomllib
-
 from . import InputError, _odometry
 from ._odometry import OdometryUpdate, RecordedDetector
-from .runs import error_of, overriding, program_path
 
 __all__ = ["InputError", "Odometry", "OdometryUpdate", "RecordedDetector", "load_config"]
 
@@ -22,6 +18,11 @@ def load_config(config=None, overrides=None):
 
     The program resolves it. Raises InputError with its message, e.g. for an unknown key.
     """
+    import subprocess  # here, as they take longer to load than the odometry
+    import tomllib
+
+    from .runs import error_of, overriding, program_path
+
     command = [program_path(), "config", "show", *(["--config", str(config)] if config is not None else [])]
     done = subprocess.run(command + overriding(overrides), capture_output=True, text=True, check=False)
     if done.returncode != 0:

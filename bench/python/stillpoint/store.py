@@ -9,8 +9,6 @@
 
 import json
 
-import numpy
-
 from . import InputError, _store
 from ._store import *  # noqa: F401,F403
 
@@ -20,6 +18,8 @@ _IDENTITY = ("id", "key", "system", "variant", "sequence", "build", "mode", "kin
 
 def columns(runs):
     """Runs as a dict of arrays: what identifies each run, its outcome, and its metrics by name (NaN: it has none)."""
+    import numpy  # not before it is needed: it takes longer to load than all of this package
+
     result = {name: numpy.array([getattr(run, name) for run in runs]) for name in _IDENTITY}
     values = [run.metrics for run in runs]
     for name in sorted(set().union(*values)):
