@@ -24,8 +24,6 @@ struct SharedValues {
   PoseValues T_b_c{}, T_c_d{};
   double time_offset_s = 0.0;
   double depth_delay_s = 0.0;
-
-  bool operator==(const SharedValues&) const = default;
 };
 
 [[nodiscard]] SharedValues shared_values(const RigCalibration& calibration);

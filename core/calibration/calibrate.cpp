@@ -401,53 +401,7 @@ class Calibration {
   CalibrationResult result_;
 };
 
-bool states_the_same(const RigCalibration& a, const RigCalibration& b) {
-  const Camera &camera = a.rig.camera, &other = b.rig.camera;
-  return shared_values(a) == shared_values(b) && camera.width == other.width &&
-         camera.height == other.height && camera.model == other.model &&
-         a.rig.depth_units_per_m == b.rig.depth_units_per_m && a.rig.imu_noise == b.rig.imu_noise;
-}
-
-/// Last time of a recording.
-Timestamp end_of(const CalibrationInput& input) {
-  Timestamp end = input.imu.empty() ? Timestamp{} : input.imu.back().t;
-  for (const CalibrationSection& section : input.sections)
-    end = std::max(end, section.keyframes.back().state.t);
-  return end;
-}
-
-Timestamp begin_of(const CalibrationInput& input) {
-  const Timestamp first = input.sections.front().keyframes.front().state.t;
-  return input.imu.empty() ? first : std::min(first, input.imu.front().t);
-}
-
 }  // namespace
-
-void append_recording(CalibrationInput& all, CalibrationInput next) {
-  constexpr double kGap_s = 3600.0;  // no interval of inertial data contains both
-  if (!states_the_same(all.stated, next.stated)) {
-    throw InputError("calibration",
-                     "the stated calibrations of the recordings differ; calibrate recordings of one "
-                     "device, and give the calibration to start from with --rig");
-  }
-  if (all.imu.empty() != next.imu.empty() || all.depth_is_registered != next.depth_is_registered) {
-    throw InputError("calibration",
-                     "only some of the recordings have inertial data, or registered depth images; "
-                     "calibrate recordings with the same sensors");
-  }
-  if (all.sections.empty() || next.sections.empty())
-    throw InputError("calibration", "a recording has no keyframes; leave it out, or correct the rig");
-  const double shift_s = seconds_between(begin_of(next), end_of(all)) + kGap_s;
-  for (CalibrationSection& section : next.sections) {
-    for (CalibrationKeyframe& keyframe : section.keyframes)
-      keyframe.state.t = after(keyframe.state.t, shift_s);
-    all.sections.push_back(std::move(section));
-  }
-  for (ImuSample& sample : next.imu) {
-    sample.t = after(sample.t, shift_s);
-    all.imu.push_back(sample);
-  }
-}
 
 CalibrationResult calibrate(const CalibrationInput& input, const CalibrationOptions& options) {
   return Calibration(input, options).run();

@@ -154,10 +154,14 @@ struct CalibrationInput {
   bool depth_is_registered = true;
 };
 
+/// What tells that recordings are not of one device: the first entry of their rig files with other values, or
+/// a sensor that only one has. Keyframes are not compared.
+/// @return such as "[camera] fx is 500 and 510"; empty: nothing
+[[nodiscard]] std::string stated_difference(const CalibrationInput& a, const CalibrationInput& b);
+
 /// Adds another recording of the same device, to which only the calibration is common. Its times are moved
 /// behind those of the recordings before it; `halves` of all are then, as a rule, different recordings.
-/// @throws InputError if one has no keyframes, the stated calibrations differ, or one has inertial data or
-/// registered depth images and the other has not
+/// @throws InputError if one has no keyframes, or with a `stated_difference`
 void append_recording(CalibrationInput& all, CalibrationInput next);
 
 /// @throws InputError if fewer than ten keyframes or 50 landmarks remain, or without both depth and IMU

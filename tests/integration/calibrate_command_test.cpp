@@ -96,6 +96,20 @@ TEST(CalibrateCommand, TakesSeveralRecordingsOfADevice) {
   EXPECT_EQ(b["keyframes"], 2 * a["keyframes"].get<int>());
 }
 
+TEST(CalibrateCommand, NamesTheRecordingsAndTheFieldOfDifferentDevicesBeforeItTracks) {
+  const TemporaryFolder folder;
+  const std::string sequence = rendered_sequence().string(), copy = (folder.path() / "copy").string(),
+                    other = (folder.path() / "other").string();
+  fs::copy(sequence, copy, fs::copy_options::recursive);
+  fs::copy(sequence, other, fs::copy_options::recursive);
+  std::ofstream(fs::path(other) / "rig.toml") << "[imu]\naccel_noise = 0.5\n";
+  const ProgramResult result = run_program({"calibrate", sequence, copy, other});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find(sequence + ", " + other), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("[imu] accel_noise is "), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("tracking"), std::string::npos) << result.err;
+}
+
 TEST(CalibrateCommand, DrawsTheResidualFieldBeforeAndAfter) {
   const TemporaryFolder out;
   const fs::path plot = out.path() / "residuals.svg";

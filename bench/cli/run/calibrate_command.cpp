@@ -122,18 +122,36 @@ void load_raw_depth(const CalibrateArguments& arguments, const std::string& sequ
 struct Recording {
   std::string sequence;
   std::unique_ptr<datasets::SensorStream> stream;
+  OdometryConfig config;
+  CalibrationInput input;  ///< without keyframes until it was tracked
 };
 
-/// Keyframes of a run of the odometry. @return nothing if interrupted
-/// @param interval_s between keyframes
-std::optional<CalibrationInput> record(const CalibrateArguments& arguments, const Recording& recording,
-                                       double interval_s) {
-  const datasets::SensorStream& stream = *recording.stream;
-  const datasets::SequenceInfo& info = stream.info();
+/// What is stated about the device, and the inertial data.
+Recording opened_recording(const CalibrateArguments& arguments, const std::string& sequence,
+                           std::unique_ptr<datasets::SensorStream> stream) {
+  const datasets::SequenceInfo& info = stream->info();
   const bool inertial = info.rig.has_imu && !info.imu.empty();
   const std::string variant = arguments.variant.empty() && !inertial ? "vo" : arguments.variant;
   const OdometryConfig config = load_config({arguments.base, variant, arguments.settings});
-  const RunSpec spec{.config = config, .max_frames = static_cast<std::size_t>(arguments.max_frames)};
+  CalibrationInput input{.stated = {.rig = info.rig, .depth_camera = info.rig.camera},
+                         .gravity = config.imu.gravity,
+                         .depth_is_registered = !info.depth_camera && !arguments.depth_camera};
+  input.stated.depth_camera.distortion.fill(0.0);
+  if (inertial && config.imu.enabled) input.imu = info.imu;
+  if (info.depth_camera) {
+    input.stated.depth_camera = info.depth_camera->camera;
+    input.stated.T_c_d = info.depth_camera->T_c_d;
+  }
+  return {sequence, std::move(stream), config, std::move(input)};
+}
+
+/// Adds the keyframes of a run of the odometry. @return whether it was not interrupted
+/// @param interval_s between keyframes
+bool track(const CalibrateArguments& arguments, Recording& recording, double interval_s) {
+  const datasets::SensorStream& stream = *recording.stream;
+  const datasets::SequenceInfo& info = stream.info();
+  const RunSpec spec{.config = recording.config,
+                     .max_frames = static_cast<std::size_t>(arguments.max_frames)};
   CalibrationCollector collector(interval_s);
   ProgressLine progress("tracking " + info.name, info.frame_times.size(), "frames");
   RunControl control{.stop_requested = interrupt_requested};
@@ -142,19 +160,10 @@ std::optional<CalibrationInput> record(const CalibrateArguments& arguments, cons
     progress.update(static_cast<std::size_t>(report.update.frame_id) + 1);
   });
   const OdometryRun run = run_odometry(stream, spec, control);
-  if (run.summary.interrupted) return std::nullopt;
-  CalibrationInput input{.stated = {.rig = info.rig, .depth_camera = info.rig.camera},
-                         .sections = collector.finish(),
-                         .gravity = config.imu.gravity};
-  input.stated.depth_camera.distortion.fill(0.0);
-  if (inertial && config.imu.enabled) input.imu = info.imu;
-  input.depth_is_registered = !info.depth_camera && !arguments.depth_camera;
-  if (info.depth_camera) {
-    input.stated.depth_camera = info.depth_camera->camera;
-    input.stated.T_c_d = info.depth_camera->T_c_d;
-    load_raw_depth(arguments, recording.sequence, input);
-  }
-  return input;
+  if (run.summary.interrupted) return false;
+  recording.input.sections = collector.finish();
+  if (info.depth_camera) load_raw_depth(arguments, recording.sequence, recording.input);
+  return true;
 }
 
 CalibrationResult estimate(const CalibrateArguments& arguments, const CalibrationInput& input) {
@@ -201,6 +210,7 @@ void write_plot(const CalibrateArguments& arguments, const datasets::SensorStrea
 }
 
 /// @return empty if interrupted
+/// @throws InputError if one is given twice, or two are not of one device
 std::vector<Recording> open_recordings(const CalibrateArguments& arguments) {
   std::vector<Recording> recordings;
   std::set<std::string> names;
@@ -208,30 +218,35 @@ std::vector<Recording> open_recordings(const CalibrateArguments& arguments) {
     if (!names.insert(std::filesystem::weakly_canonical(sequence).string()).second)
       throw InputError(sequence,
                        "is given twice, which would count its data twice; give each recording once");
-    recordings.push_back({sequence, open_stream(arguments, sequence, false)});
-    if (!recordings.back().stream) return {};
-    for (const std::string& note : recordings.back().stream->info().notes) spdlog::info("{}", note);
+    auto stream = open_stream(arguments, sequence, false);
+    if (!stream) return {};
+    for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
+    recordings.push_back(opened_recording(arguments, sequence, std::move(stream)));
+    const Recording& first = recordings.front();
+    if (const std::string text = stated_difference(first.input, recordings.back().input); !text.empty())
+      throw InputError(first.sequence + ", " + sequence,
+                       "are not of one device: " + text +
+                           "; calibrate recordings of one device, and give the calibration to start from "
+                           "with --rig");
   }
   return recordings;
 }
 
 /// The keyframes of all recordings. @return nothing if interrupted
-std::optional<CalibrationInput> record_all(const CalibrateArguments& arguments,
-                                           const std::vector<Recording>& recordings) {
+std::optional<CalibrationInput> track_all(const CalibrateArguments& arguments,
+                                          std::vector<Recording>& recordings) {
   double all_s = 0.0;
   for (const Recording& recording : recordings)
     all_s += duration_s(recording.stream->info(), arguments.max_frames);
   std::optional<CalibrationInput> all;
-  for (const Recording& recording : recordings) {
-    std::optional<CalibrationInput> next =
-        record(arguments, recording, std::max(kLeastInterval_s, all_s / kMostKeyframes));
-    if (!next) return std::nullopt;
-    if (recordings.size() > 1 && next->sections.empty())
+  for (Recording& recording : recordings) {
+    if (!track(arguments, recording, std::max(kLeastInterval_s, all_s / kMostKeyframes))) return std::nullopt;
+    if (recordings.size() > 1 && recording.input.sections.empty())
       throw InputError(recording.sequence, "the odometry located no frame; leave it out, or correct the rig");
     if (!all) {
-      all = std::move(next);
+      all = std::move(recording.input);
     } else {
-      append_recording(*all, std::move(*next));
+      append_recording(*all, std::move(recording.input));
     }
   }
   return all;
@@ -243,9 +258,9 @@ int calibrate_sequences(const CalibrateArguments& arguments) {
   if (!arguments.out.empty()) require_safe_output(arguments.out, rules_of(arguments));
   if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules_of(arguments));
   install_interrupt_handlers();
-  const std::vector<Recording> recordings = open_recordings(arguments);
+  std::vector<Recording> recordings = open_recordings(arguments);
   if (recordings.empty()) return kExitInterrupted;
-  const std::optional<CalibrationInput> input = record_all(arguments, recordings);
+  const std::optional<CalibrationInput> input = track_all(arguments, recordings);
   if (!input) return kExitInterrupted;
   const CalibrationResult result = estimate(arguments, *input);
   std::string names;

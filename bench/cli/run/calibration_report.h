@@ -15,7 +15,6 @@ struct CalibrationSubject {
   std::string sequence;
   bool has_imu = false;
   bool has_depth_camera = false;  ///< depth images are those of another camera
-  double seconds = 0.0;           ///< duration of the recording
 };
 
 /// Table of the parameters, and the residuals.

@@ -210,7 +210,8 @@ TEST(Calibrate, RecordingsOfDifferentDevicesAreRefused) {
     CalibrationInput all = recording(recorded_motion(3), stated_rig(3));
     append_recording(all, next);
   };
-  expect_input_error([&] { append(recording(recorded_motion(4), stated_rig(4))); }, {"differ", "--rig"});
+  expect_input_error([&] { append(recording(recorded_motion(4), stated_rig(4))); },
+                     {"one device", "[camera] fx is "});
   expect_input_error([&] { append(recording(recorded_motion(4), stated_rig(3), false)); }, {"inertial data"});
 }
 
