@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <utility>
 
 #include "core/base/error.h"
@@ -18,14 +20,34 @@ constexpr double kEdgeRatio = 0.02;
 /// deviations of the depth at 4 m.
 constexpr double kSeenThroughRatio = 0.04;
 
+constexpr std::uint64_t kIndexBits = 21;
+constexpr std::uint64_t kIndexMask = (1 << kIndexBits) - 1;
+constexpr std::int64_t kIndexOffset = 1 << (kIndexBits - 1);
+constexpr int kBlockVoxels = 16;  ///< per axis, a power of two
+/// Half a diagonal of a block, in voxels, and one more for rounding.
+constexpr double kBlockRadius = 0.5 * kBlockVoxels * std::numbers::sqrt3 + 1.0;
+
 /// Number of a voxel: 21 bits per axis, ascending by z, then y, then x.
 std::uint64_t voxel_number(const Eigen::Vector3d& p, double voxel_m) {
-  constexpr std::int64_t kOffset = 1 << 20;
   const auto index = [&](double value) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / voxel_m)) + kOffset) &
-           0x1fffff;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / voxel_m)) + kIndexOffset) &
+           kIndexMask;
   };
-  return index(p.z()) << 42 | index(p.y()) << 21 | index(p.x());
+  return index(p.z()) << 2 * kIndexBits | index(p.y()) << kIndexBits | index(p.x());
+}
+
+/// Number of the first voxel of the block that contains a voxel.
+std::uint64_t block_number(std::uint64_t voxel) {
+  constexpr std::uint64_t kAxis = kBlockVoxels - 1;
+  return voxel & ~(kAxis << 2 * kIndexBits | kAxis << kIndexBits | kAxis);
+}
+
+Eigen::Vector3d block_center(std::uint64_t block, double voxel_m) {
+  const auto center = [&](std::uint64_t axis) {
+    const auto index = static_cast<std::int64_t>(block >> axis * kIndexBits & kIndexMask) - kIndexOffset;
+    return (static_cast<double>(index) + 0.5 * kBlockVoxels) * voxel_m;
+  };
+  return {center(0), center(1), center(2)};
 }
 
 /// Whether the depth differs from that of a neighbor, or one is not measured.
@@ -56,19 +78,42 @@ VoxelMap::VoxelMap(const Camera& camera, const VoxelMapOptions& options)
     for (int column = 0; column < camera.width; column += step_px_)
       bearings_.push_back(camera.unproject(Eigen::Vector2d(column, row)));
   }
+  for (const Eigen::Vector2d& bearing : bearings_) max_bearing_ = max_bearing_.max(bearing.array().abs());
+}
+
+VoxelMap::Voxel& VoxelMap::voxel_at(const Eigen::Vector3d& p_w) {
+  const std::uint64_t number = voxel_number(p_w, options_.voxel_m);
+  const std::uint64_t block = block_number(number);
+  const auto [at, is_new] = blocks_.try_emplace(block);
+  if (is_new) at->second.center = block_center(block, options_.voxel_m);
+  return at->second.voxels[number];
+}
+
+bool VoxelMap::in_view(const Eigen::Vector3d& center_c) const {
+  constexpr double kBorder = 1.02;  // the outermost pixels may be unused
+  const double radius_m = kBlockRadius * options_.voxel_m;
+  if (center_c.z() < kMinFusedDepth_m - radius_m || center_c.z() > options_.max_depth_m + radius_m)
+    return false;
+  // Distance to the planes through the camera's center and the border of the image, in x and y.
+  const Eigen::Array2d slope = kBorder * max_bearing_;
+  return (center_c.head<2>().array().abs() - slope * center_c.z() <= radius_m * (1.0 + slope.square()).sqrt())
+      .all();
 }
 
 void VoxelMap::count_seen_through(const Frame& frame, const Pose& T_w_c) {
   const Pose T_c_w = T_w_c.inverse();
-  for (auto& [number, voxel] : voxels_) {
-    if (voxel.measured == 0) continue;
-    const Eigen::Vector3d p_c = T_c_w * (voxel.p / voxel.weight);
-    if (p_c.z() < kMinFusedDepth_m || p_c.z() > options_.max_depth_m) continue;
-    const Eigen::Vector2d pixel = camera_.project(p_c);
-    if (!camera_.contains(pixel)) continue;
-    const double depth_m = depth_at(frame.depth, frame.depth_units_per_m, pixel.x(), pixel.y());
-    const double margin_m = 3.0 * options_.voxel_m + kSeenThroughRatio * p_c.z();
-    if (depth_m > p_c.z() + margin_m) ++voxel.seen_through;
+  for (auto& [first, block] : blocks_) {
+    if (!in_view(T_c_w * block.center)) continue;
+    for (auto& [number, voxel] : block.voxels) {
+      if (voxel.measured == 0) continue;
+      const Eigen::Vector3d p_c = T_c_w * (voxel.p / voxel.weight);
+      if (p_c.z() < kMinFusedDepth_m || p_c.z() > options_.max_depth_m) continue;
+      const Eigen::Vector2d pixel = camera_.project(p_c);
+      if (!camera_.contains(pixel)) continue;
+      const double depth_m = depth_at(frame.depth, frame.depth_units_per_m, pixel.x(), pixel.y());
+      const double margin_m = 3.0 * options_.voxel_m + kSeenThroughRatio * p_c.z();
+      if (depth_m > p_c.z() + margin_m) ++voxel.seen_through;
+    }
   }
 }
 
@@ -84,7 +129,7 @@ void VoxelMap::add(const Frame& frame, const Pose& T_w_c, const Excluded& exclud
       if (depth_m < kMinFusedDepth_m || depth_m > options_.max_depth_m || is_edge(frame.depth, row, column))
         continue;
       const Eigen::Vector3d p_w = T_w_c * Eigen::Vector3d(depth_m * bearing->homogeneous());
-      Voxel& voxel = voxels_[voxel_number(p_w, options_.voxel_m)];
+      Voxel& voxel = voxel_at(p_w);
       if (excluded && excluded(column, row, depth_m)) {
         voxel.excluded += voxel.last_excluded == image_ ? 0 : 1;
         voxel.last_excluded = image_;
@@ -102,15 +147,16 @@ void VoxelMap::add(const Frame& frame, const Pose& T_w_c, const Excluded& exclud
 }
 
 std::vector<eval::CloudPoint> VoxelMap::cloud() const {
-  std::vector<std::uint64_t> numbers;
-  for (const auto& [number, voxel] : voxels_) {
-    if (voxel.measured >= options_.min_images && voxel.measured > 2 * (voxel.seen_through + voxel.excluded))
-      numbers.push_back(number);
+  std::map<std::uint64_t, const Voxel*> found;
+  for (const auto& [first, block] : blocks_) {
+    for (const auto& [number, voxel] : block.voxels) {
+      if (voxel.measured >= options_.min_images && voxel.measured > 2 * (voxel.seen_through + voxel.excluded))
+        found.emplace(number, &voxel);
+    }
   }
-  std::ranges::sort(numbers);
   std::vector<eval::CloudPoint> points;
-  for (const std::uint64_t number : numbers) {
-    const Voxel& voxel = voxels_.at(number);
+  for (const auto& [number, found_voxel] : found) {
+    const Voxel& voxel = *found_voxel;
     const Eigen::Vector3d rgb = voxel.rgb / voxel.weight;
     points.push_back(
         {.p = (voxel.p / voxel.weight).cast<float>(),

@@ -56,13 +56,23 @@ class VoxelMap {
     int last_measured = -1, last_excluded = -1;     ///< images
   };
 
+  /// A cube of 16^3 voxels, of which those are stored that were measured or left out.
+  struct Block {
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    std::unordered_map<std::uint64_t, Voxel> voxels;  ///< by number
+  };
+
+  Voxel& voxel_at(const Eigen::Vector3d& p_w);
+  /// Whether the camera may see a part of the block. Conservative.
+  [[nodiscard]] bool in_view(const Eigen::Vector3d& center_c) const;
   void count_seen_through(const Frame& frame, const Pose& T_w_c);
 
   Camera camera_;
   VoxelMapOptions options_;
-  int step_px_;                            ///< distance of the used pixels
-  std::vector<Eigen::Vector2d> bearings_;  ///< undistorted, of the used pixels, row by row
-  std::unordered_map<std::uint64_t, Voxel> voxels_;
+  int step_px_;                                          ///< distance of the used pixels
+  std::vector<Eigen::Vector2d> bearings_;                ///< undistorted, of the used pixels, row by row
+  Eigen::Array2d max_bearing_ = Eigen::Array2d::Zero();  ///< absolute values of `bearings_`
+  std::unordered_map<std::uint64_t, Block> blocks_;
   int image_ = 0;
 };
 
