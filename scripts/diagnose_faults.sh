@@ -24,6 +24,7 @@ accel_inverted | accel_axes | file
 accel_xz | accel_axes | file
 depth_5 | depth_unit | file
 depth_fifth | depth_unit | file
+standing_start | standing_start | file
 truth_late | truth_late | file
 truth_noise | truth_noise | file
 truth_jump | truth_jump | file
@@ -88,6 +89,9 @@ changed_copy() { # SEQUENCE FAULT FOLDER: the files of the sequence by links, an
     accel_xz) rewrite $accel 'print $1, $4, $3, $2' ;;
     depth_5) printf '[depth]\nscale = 5000\n' >"$folder/rig.toml" ;;
     depth_fifth) printf '[depth]\nscale = 200\n' >"$folder/rig.toml" ;;
+    standing_start)  # bias of a gyroscope that is found in motion
+      rewrite $gyro 'printf "%s %.9f %.9f %.9f\n", $1, $2 + 0.1, $3 - 0.1, $4 + 0.1'
+      ;;
     truth_late)
       rewrite $truth 'split($1, part, "."); ns = substr(part[2] "000000000", 1, 9) + 60000000; s = part[1]
         if (ns >= 1000000000) { ns -= 1000000000; ++s }
@@ -121,11 +125,11 @@ for sequence in "$@"; do
       rm -rf "${work:?}"/[01]
       continue
     fi
-    # Causes with an effect first, then those with less effect, then those that were not measured.
+    # Causes with an effect first, then the others.
     awk -v sequence="$(basename "$sequence")" -v fault="$fault" -v expected="$expected" -v seconds=$((SECONDS - begin)) '
       /"id":/ { gsub(/[",]/, "", $2); ids[++n] = $2 }
       /"error_ratio":/ { gsub(/,/, "", $2); ratio[n] = $2 }
-      /"less_effect":/ { effective = n }
+      /"others":/ { effective = n }
       /"least_effect":/ { gsub(/,/, "", $2); least = $2 }
       END {
         wanted = split(expected, causes, "+")

@@ -13,6 +13,13 @@ namespace stillpoint::bench {
 /// Strength of wrong units and axes, whose consequences look like other causes.
 inline constexpr double kFundamental = 500.0;
 
+/// What a candidate is known by.
+enum class CauseBasis {
+  kShown,     ///< the data itself, e.g. blank frames
+  kCompared,  ///< sensors that contradict each other, by several standard deviations
+  kInferred,  ///< a run of the odometry, which any other fault disturbs
+};
+
 /// A candidate cause with its evidence. Without correction and times its effect cannot be measured.
 struct Cause {
   std::string id;                          ///< for programs, such as "gyro_unit"
@@ -24,7 +31,8 @@ struct Cause {
   /// Of the frames concerned, where it cannot be undone: the error outside of them is compared with that of
   /// all.
   std::vector<Timestamp> times{};
-  bool observed = false;       ///< the data itself shows it, e.g. blank frames; else inferred by comparison
+  CauseBasis basis = CauseBasis::kCompared;
+  bool needs_effect = false;   ///< without one it is not listed: most sound recordings have the evidence
   double largest_ratio = 0.9;  ///< `error_ratio` up to which the effect counts
   bool consistent = true;      ///< whether all runs show the effect
   /// Error with the correction, or outside of the frames, to that as it is.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -67,11 +68,12 @@ class Diagnoser {
       if (!find_next(round)) break;
     }
     std::ranges::stable_sort(diagnosis_.causes, {}, [](const Cause& cause) { return *cause.error_ratio; });
-    rank_harmless(diagnosis_.harmless);
+    rank_others(diagnosis_.others, effective_ratio());
     diagnosis_.frames = request_.part.count;
     diagnosis_.seconds = part_s();
-    const auto waiting = std::ranges::count_if(
-        diagnosis_.unmeasured, [](const Cause& cause) { return cause.correction.has_value(); });
+    const auto waiting = std::ranges::count_if(diagnosis_.others, [](const Cause& cause) {
+      return cause.correction.has_value() && !cause.error_ratio;
+    });
     if (spent_ && waiting > 0) leave_out(fmt::format("the effects of {} candidate(s)", waiting));
     diagnosis_.interrupted = stopped();
     diagnosis_.least_effect = 1.0 - effective_ratio();
@@ -182,7 +184,7 @@ class Diagnoser {
     }
     const TruthReport truth = truth_report(part->info(), survey, visual);
     for (const auto& more : {inertial_causes(part->info(), survey), image_causes(part->info(), survey),
-                             truth_causes(truth, part->info())})
+                             truth_causes(truth, part->info()), start_causes(part->info(), survey)})
       all.insert(all.end(), more.begin(), more.end());
     if (alignment) {
       const std::vector<Cause> more = alignment_causes(*alignment);
@@ -280,12 +282,10 @@ class Diagnoser {
       return true;
     }
     for (Cause& cause : found) {
-      if (!cause.error_ratio) {
-        diagnosis_.unmeasured.push_back(std::move(cause));
-      } else if (has_effect(cause)) {
+      if (has_effect(cause)) {
         diagnosis_.causes.push_back(std::move(cause));
-      } else {
-        diagnosis_.harmless.push_back(std::move(cause));
+      } else if (!cause.needs_effect) {
+        diagnosis_.others.push_back(std::move(cause));
       }
     }
     return false;
@@ -306,9 +306,12 @@ class Diagnoser {
 
 }  // namespace
 
-void rank_harmless(std::vector<Cause>& causes) {
-  std::ranges::stable_sort(
-      causes, {}, [](const Cause& cause) { return cause.observed ? 0.0 : cause.error_ratio.value_or(1.0); });
+void rank_others(std::vector<Cause>& causes, double effective) {
+  std::ranges::stable_sort(causes, {}, [effective](const Cause& cause) {
+    if (cause.basis == CauseBasis::kShown) return std::tuple(false, cause.basis, 0.0);
+    const double ratio = cause.error_ratio.value_or(1.0);
+    return std::tuple(ratio * effective > 1.0, cause.basis, ratio);
+  });
 }
 
 Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options) {

@@ -48,13 +48,14 @@ struct Diagnosis {
   bool interrupted = false;
   std::vector<std::string> left_out;  ///< for lack of budget, one phrase each
   std::vector<Cause> causes;          ///< with an effect, worst first
-  std::vector<Cause> harmless;        ///< with evidence, but a smaller effect
-  std::vector<Cause> unmeasured;
+  std::vector<Cause> others;  ///< with a smaller effect, or one that was not measured: most likely first
 };
 
-/// Orders causes without an effect: first those that the data itself shows, as they are; then inferred ones,
-/// by the error with their correction, which refutes one that does not reduce it.
-void rank_harmless(std::vector<Cause>& causes);
+/// Orders causes without an effect that counts: those that the data itself shows, as they are; those by
+/// comparison of sensors; those inferred from a run; among the last two by the error with their correction,
+/// and last those whose correction increases it by more than chance.
+/// @param effective ratio of errors that counts, see `Diagnosis::least_effect`
+void rank_others(std::vector<Cause>& causes, double effective);
 
 /// @throws InputError as `run_odometry`, for a budget that ends before 30 frames are processed, and for a
 /// finished run of fewer frames or without ground truth

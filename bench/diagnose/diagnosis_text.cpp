@@ -35,7 +35,7 @@ std::string names(const std::vector<Cause>& causes) {
   std::vector<std::string> parts;
   for (const Cause& cause : causes) {
     parts.push_back(cause.name);
-    if (cause.error_ratio) parts.back() += " (" + effect_text(*cause.error_ratio) + ")";
+    parts.back() += " (" + (cause.error_ratio ? effect_text(*cause.error_ratio) : "not measured") + ")";
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -54,12 +54,12 @@ nlohmann::ordered_json list(const std::vector<Cause>& causes) {
 }
 
 /// Of a run of another system, with evidence and remedy: the effects are measured with this odometry.
-std::string unmeasured_text(const Diagnosis& diagnosis) {
-  if (diagnosis.unmeasured.empty()) return "";
-  if (!diagnosis.foreign) return "found, effect not measured: " + names(diagnosis.unmeasured) + "\n";
+std::string others_text(const Diagnosis& diagnosis) {
+  if (diagnosis.others.empty()) return "";
+  if (!diagnosis.foreign) return "found, with less effect: " + names(diagnosis.others) + "\n";
   std::string text = "found; the effect needs a run of this odometry (leave RUN out):\n";
   std::size_t number = 0;
-  for (const Cause& cause : diagnosis.unmeasured) {
+  for (const Cause& cause : diagnosis.others) {
     if (++number > kMaxCauses) break;
     text += fmt::format("- {}: {}\n  remedy: {}\n", cause.name, cause.evidence, cause.remedy);
   }
@@ -78,11 +78,10 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
                         cause.correction ? "without it" : "outside of the frames concerned", cause.evidence,
                         cause.remedy);
   }
-  if (diagnosis.causes.empty() && !(diagnosis.foreign && !diagnosis.unmeasured.empty()))
+  if (diagnosis.causes.empty() && !(diagnosis.foreign && !diagnosis.others.empty()))
     text += fmt::format("nothing found that changes the error by more than {:.0f} %\n",
                         100.0 * diagnosis.least_effect);
-  if (!diagnosis.harmless.empty()) text += "found, with less effect: " + names(diagnosis.harmless) + "\n";
-  text += unmeasured_text(diagnosis);
+  text += others_text(diagnosis);
   if (!diagnosis.left_out.empty())
     text += fmt::format("left out, for lack of budget: {}\n", fmt::join(diagnosis.left_out, "; "));
   return text + (diagnosis.interrupted ? "interrupted\n" : "");
@@ -90,7 +89,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
 
 std::string diagnosis_json(const Diagnosis& diagnosis) {
   const nlohmann::ordered_json json = {
-      {"schema", 2},
+      {"schema", 3},
       {"sequence", diagnosis.sequence},
       {"measure", diagnosis.measure == ErrorMeasure::kTruth ? "ate" : "inconsistency"},
       {"frames", diagnosis.frames},
@@ -104,8 +103,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"interrupted", diagnosis.interrupted},
       {"left_out", diagnosis.left_out},
       {"causes", list(diagnosis.causes)},
-      {"less_effect", list(diagnosis.harmless)},
-      {"not_measured", list(diagnosis.unmeasured)}};
+      {"others", list(diagnosis.others)}};
   return json.dump(2) + "\n";
 }
 

@@ -15,6 +15,7 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr double kUniformGray = 3.0;    ///< deviation of an image without content
+constexpr double kUniformRatio = 0.1;   ///< same, to the mean: dark images keep their contrast
 constexpr double kDarkened = 0.5;       ///< mean brightness, relative to the median of the frames
 constexpr double kMostClipped = 0.3;    ///< fraction of black or white pixels
 constexpr double kExposureStep = 0.12;  ///< change of the logarithm of the brightness between two frames
@@ -55,7 +56,7 @@ class FrameCauses {
     }
     if (cause.times.size() < kLeastConcerned) return;
     const auto count = static_cast<double>(cause.times.size());
-    cause.observed = true;
+    cause.basis = CauseBasis::kShown;
     cause.strength = 10.0 * count / static_cast<double>(survey_.frames.size());
     cause.evidence = fmt::format("{} of {} frames {}", count, survey_.frames.size(), cause.evidence);
     causes_.push_back(std::move(cause));
@@ -71,7 +72,10 @@ std::vector<Cause> content_causes(const RecordingSurvey& survey) {
   const auto& frames = survey.frames;
   const double gray = median_of(survey, &FrameStatistics::mean_gray);
   const double sharpness = median_of(survey, &FrameStatistics::sharpness);
-  const auto is_uniform = [&](std::size_t i) { return frames[i].deviation_gray < kUniformGray; };
+  const auto is_uniform = [&](std::size_t i) {
+    return frames[i].deviation_gray < kUniformGray &&
+           frames[i].deviation_gray <= kUniformRatio * frames[i].mean_gray;
+  };
   FrameCauses causes(survey);
   causes.add({.id = "blank",
               .name = "blank images",
@@ -106,7 +110,13 @@ std::vector<Cause> content_causes(const RecordingSurvey& survey) {
               .evidence = "are blurred",
               .remedy = "shorten the exposure, add light, or move more slowly"},
              [&](std::size_t i) { return !is_uniform(i) && frames[i].sharpness < kBlurred * sharpness; });
-  return causes.take();
+  std::vector<Cause> found = causes.take();
+  // Frames of a wrong exposure between its steps are the consequence of these.
+  const auto steps = std::ranges::find(found, "exposure_steps", &Cause::id);
+  const auto wrong = std::ranges::find(found, "exposure", &Cause::id);
+  if (steps != found.end() && wrong != found.end())
+    wrong->strength = std::min(wrong->strength, 0.5 * steps->strength);
+  return found;
 }
 
 std::vector<Cause> depth_causes(const RecordingSurvey& survey) {
@@ -178,7 +188,7 @@ std::vector<Cause> dropped_frames(const std::vector<Timestamp>& times) {
   cause.evidence =
       fmt::format("{:.0f} of {:.0f} frames, the longest gap is {:.2f} s", missing,
                   missing + static_cast<double>(times.size()), *std::ranges::max_element(intervals));
-  cause.observed = true;
+  cause.basis = CauseBasis::kShown;
   cause.strength = 10.0 * ratio;
   return {cause};
 }
@@ -209,7 +219,7 @@ std::vector<Cause> rounded_stamps(const std::vector<Timestamp>& times) {
                                               changed.frame_times[i] =
                                                   after(first, static_cast<double>(i) * interval_s);
                                           }},
-             .observed = true}};
+             .basis = CauseBasis::kShown}};
   }
   return {};
 }

@@ -2,7 +2,9 @@
 #include "bench/diagnose/inertial_causes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -27,6 +29,7 @@ constexpr double kBetterAxes = 0.6;   ///< residual with it, relative to that wi
 constexpr double kLeastRate = 0.02;   ///< of the rotation that tells the unit [rad/s]
 constexpr double kLeastAngle_rad = 1.0 * kDegree;
 constexpr double kAlignmentError_rad = 0.2 * kDegree;  ///< of the motion between images
+constexpr double kDownward = -0.95;                    ///< upward part of a specific force downward
 constexpr double kMostSigma_rad = 3.0 * kDegree;       ///< of an observed axis
 
 void scale_gyro(datasets::SequenceInfo& info, double factor) {
@@ -116,37 +119,60 @@ Cause extrinsics_cause(const std::string& id, const std::string& name, const std
           .correction = Correction{.change = [T_b_c](auto& changed) { changed.rig.T_b_c = T_b_c; }}};
 }
 
+/// The simplest permutation by whose residual no other one is clearly better: axes without rotation do not
+/// tell their order. All signs inverted, then single signs, swapped axes, and those with other signs.
+Eigen::Matrix3d simplest_permutation(const std::function<double(const Eigen::Matrix3d&)>& residual_with) {
+  constexpr double kAsGood = 1.05;
+  const auto& all = axis_permutations();
+  std::array<double, 48> residuals{};
+  std::ranges::transform(all, residuals.begin(), residual_with);
+  const double smallest = *std::ranges::min_element(residuals);
+  const auto complexity = [&](const Eigen::Matrix3d& P) {
+    const bool signs_differ = std::abs(P.sum()) < 3.0;
+    return 3.0 - P.diagonal().cwiseAbs().sum() + (signs_differ ? 0.5 : 0.0) +
+           (signs_differ && P.determinant() < 0.0 ? 0.25 : 0.0);
+  };
+  std::size_t best = all.size();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (residuals[i] > kAsGood * smallest) continue;
+    if (best == all.size() || complexity(all[i]) < complexity(all[best])) best = i;
+  }
+  return all[best];
+}
+
 /// Swapped or inverted axes, the inverse of the extrinsics, mirrored images: all that makes the gyroscope
 /// follow the images much better than with the stated calibration.
+/// @param at_offsets pairs at the stated time offset, and at that which fits best with any rotation: half a
+/// period of a vibration later a gyroscope with inverted axes looks right
 /// @param accel_is_right whether the accelerometer follows the images with the stated axes
-std::vector<Cause> axes_causes(const datasets::SequenceInfo& info, std::span<const RatePair> pairs,
-                               bool accel_is_right) {
+std::vector<Cause> axes_causes(const datasets::SequenceInfo& info,
+                               const std::array<std::vector<RatePair>, 2>& at_offsets, bool accel_is_right) {
   const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
-  const double stated = relative_residual(pairs, R_b_c);
+  const auto residual = [&](const Eigen::Matrix3d& R) {
+    return std::min(relative_residual(at_offsets[0], R), relative_residual(at_offsets[1], R));
+  };
+  const double stated = residual(R_b_c);
   if (stated < kRightAxes) return {};
   std::vector<Cause> causes;
-  const auto& permutations = axis_permutations();
-  const auto residual_with = [&](const Eigen::Matrix3d& P) {
-    return relative_residual(pairs, P.transpose() * R_b_c);
-  };
-  const auto best = std::ranges::min_element(permutations, {}, residual_with);
-  const double smallest = residual_with(*best);
-  const auto evidence = [&](double residual) {
+  const auto residual_with = [&](const Eigen::Matrix3d& P) { return residual(P.transpose() * R_b_c); };
+  const Eigen::Matrix3d best = simplest_permutation(residual_with);
+  const double smallest = residual_with(best);
+  const auto evidence = [&](double with_it) {
     return fmt::format(
         "the gyroscope differs from the rotation between images by {:.0f} %, by {:.0f} % with it",
-        100.0 * stated, 100.0 * residual);
+        100.0 * stated, 100.0 * with_it);
   };
   if (smallest < kBetterAxes * stated) {
-    causes.push_back(axes_cause(*best, PermutedSensor::kBoth, evidence(smallest)));
-    causes.push_back(axes_cause(*best, PermutedSensor::kGyro, evidence(smallest)));
+    causes.push_back(axes_cause(best, PermutedSensor::kBoth, evidence(smallest)));
+    causes.push_back(axes_cause(best, PermutedSensor::kGyro, evidence(smallest)));
     // The sensor whose axes are right by the accelerometer is tried last.
     causes[accel_is_right ? 1 : 0].strength += 10.0;
   }
-  const double inverse = relative_residual(pairs, R_b_c.transpose());
+  const double inverse = residual(R_b_c.transpose());
   if (inverse < kBetterAxes * stated)
     causes.push_back(extrinsics_cause("extrinsics_inverse", "inverse of T_b_c stated", evidence(inverse),
                                       info.rig.T_b_c.inverse()));
-  const double mirrored = relative_residual(pairs, R_b_c * Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());
+  const double mirrored = residual(R_b_c * Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());
   if (mirrored < kBetterAxes * stated)
     causes.push_back({.id = "mirrored",
                       .name = "images mirrored left to right",
@@ -239,7 +265,7 @@ Cause sample_cause(const std::string& id, const std::string& name, const std::st
           .remedy = "record again with another rate or range; `--variant vo` is without IMU",
           .strength = strength,
           .correction = Correction{.settings = {"imu.enabled=false"}},
-          .observed = true};
+          .basis = CauseBasis::kShown};
 }
 
 /// Samples during the frames.
@@ -325,7 +351,8 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
   const std::optional<LagFit> lag = fit_lag(gyro, by_images, kLagRange_s);
   const std::vector<RatePair> pairs = rate_pairs(gyro, by_images, lag ? lag->lag_s : info.rig.time_offset_s);
   const std::optional<AccelerometerAxes> accel_axes = accelerometer_axes(info, survey);
-  const std::vector<Cause> axes = axes_causes(info, pairs, !accel_axes);
+  const std::vector<Cause> axes =
+      axes_causes(info, {rate_pairs(gyro, by_images, info.rig.time_offset_s), pairs}, !accel_axes);
   add(axes);
   if (axes.empty()) add(rotation_causes(info, pairs));
   if (lag) {
@@ -339,8 +366,44 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
         fmt::format("the accelerometer follows the motion between images with a correlation of {:.2f}, "
                     "{:.2f} with it",
                     accel_axes->stated, accel_axes->correlation))});
+  } else if (const auto up = upward_part_of_force(info); up && *up < kDownward) {
+    causes.push_back(
+        axes_cause(-Eigen::Matrix3d::Identity(), PermutedSensor::kAccel,
+                   "at rest it would measure an acceleration downward, by the ground truth (if its "
+                   "z axis points up)"));
+    causes.back().strength = 100.0;  // unlike the motion between images, by a convention
   }
   return causes;
+}
+
+std::vector<Cause> start_causes(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
+  constexpr double kRest_s = 1.0, kSettled_s = 2.0;
+  constexpr double kLeastSpeed_mps = 0.05, kLeastRate_radps = 0.05;  // of hands that hold a camera still
+  constexpr double kClearEffect = 0.7;  // errors in 2 of 8 s that are 2.3 times those of the others
+  if (info.imu.empty() || survey.frames.empty()) return {};
+  Cause cause{.id = "standing_start",
+              .name = "standing start missing",
+              .remedy = "let the camera rest for 2 s at the start, or leave the start out by --start",
+              .strength = 0.5,
+              .basis = CauseBasis::kInferred,
+              .needs_effect = true,
+              .largest_ratio = kClearEffect};
+  double seconds = 0.0, path_m = 0.0, angle_rad = 0.0;
+  const Timestamp first = survey.frames.front().t;
+  for (std::size_t i = 0; i < survey.frames.size(); ++i) {
+    const FrameStatistics& frame = survey.frames[i];
+    if (frame.t > after(first, kSettled_s)) break;
+    cause.times.push_back(frame.t);
+    if (i == 0 || !frame.T_now_last || frame.t > after(first, kRest_s)) continue;
+    seconds += seconds_between(survey.frames[i - 1].t, frame.t);
+    path_m += frame.T_now_last->p.norm();
+    angle_rad += log_so3(frame.T_now_last->q).norm();
+  }
+  if (seconds <= 0.0 || (path_m < kLeastSpeed_mps * seconds && angle_rad < kLeastRate_radps * seconds))
+    return {};
+  cause.evidence = fmt::format("the camera moves at {:.2f} m/s and {:.2f} rad/s in the first second",
+                               path_m / seconds, angle_rad / seconds);
+  return {cause};
 }
 
 }  // namespace stillpoint::bench

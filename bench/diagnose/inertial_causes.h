@@ -14,4 +14,9 @@ namespace stillpoint::bench {
 [[nodiscard]] std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info,
                                                  const RecordingSurvey& survey);
 
+/// A camera that moves in the first second: biases and gravity are then found in motion. The frames concerned
+/// are those of the first two seconds.
+[[nodiscard]] std::vector<Cause> start_causes(const datasets::SequenceInfo& info,
+                                              const RecordingSurvey& survey);
+
 }  // namespace stillpoint::bench

@@ -15,6 +15,8 @@ namespace {
 constexpr double kNoisier = 3.0;       ///< ratio of the noise of the IMU to the stated densities
 constexpr double kFewFeatures = 50.0;  ///< mean number of tracked features
 constexpr double kManyDynamic = 0.1;   ///< fraction of the features, without boxes
+constexpr double kSamePlace = 0.3;     ///< intersection over union of boxes of a person in successive frames
+constexpr double kFlickering = 0.3;    ///< fraction of boxes that successive frames do not have
 constexpr double kBoxedRatio = 0.02;   ///< mean fraction of the image in boxes, below which they do nothing
 
 std::string difference_text(const RigFinding& finding) {
@@ -74,7 +76,8 @@ Cause depth_scale_cause(const EstimatedCalibration& c, const RigFinding& finding
       .evidence = difference_text(finding) + " %",
       .remedy = fmt::format("[depth] scale = {:.1f} in rig.toml", c.rig.depth_units_per_m * c.depth_scale),
       .strength = rig_strength(finding),
-      .correction = Correction{.depth_factor = 1.0 / c.depth_scale}};
+      .correction = Correction{.depth_factor = 1.0 / c.depth_scale},
+      .basis = CauseBasis::kInferred};
 }
 
 /// The most significant finding of each id.
@@ -95,7 +98,8 @@ std::vector<Cause> rig_causes(const EstimatedCalibration& calibration) {
                .evidence = finding.parameter + ": " + difference_text(finding),
                .remedy = change->entry,
                .strength = rig_strength(finding),
-               .correction = Correction{.change = [apply = change->apply](auto& info) { apply(info.rig); }}};
+               .correction = Correction{.change = [apply = change->apply](auto& info) { apply(info.rig); }},
+               .basis = CauseBasis::kInferred};
     }
     const auto known = std::ranges::find(causes, cause.id, &Cause::id);
     if (known == causes.end()) {
@@ -107,8 +111,22 @@ std::vector<Cause> rig_causes(const EstimatedCalibration& calibration) {
   return causes;
 }
 
+/// By how much the errors of the inertial prediction exceed the noise that it was used with: the root of the
+/// median of its normalized innovation squared, at least 1.
+double excess_of_innovations(const OdometryRun& run) {
+  std::vector<double> squares;
+  for (const Innovations& frame : run.innovations) {
+    if (frame.inertial) squares.push_back(*frame.inertial);
+  }
+  if (squares.empty()) return 1.0;
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  return std::max(1.0, std::sqrt(*middle));
+}
+
 std::vector<Cause> noise_causes(const OdometryRun& run, const datasets::SequenceInfo& info) {
-  const ImuNoiseFactors& factors = run.imu_noise;
+  const double excess = excess_of_innovations(run);
+  const ImuNoiseFactors factors{.gyro = excess * run.imu_noise.gyro, .accel = excess * run.imu_noise.accel};
   const double largest = std::max(factors.gyro, factors.accel);
   if (info.imu.empty() || largest < kNoisier) return {};
   ImuNoise noise = info.rig.imu_noise;
@@ -122,8 +140,9 @@ std::vector<Cause> noise_causes(const OdometryRun& run, const datasets::Sequence
                            factors.gyro, factors.accel),
            .remedy = fmt::format("[imu] gyro_noise = {:.2g}, accel_noise = {:.2g} in rig.toml",
                                  noise.gyro_noise, noise.accel_noise),
-           .strength = largest,
-           .correction = Correction{.change = [noise](auto& changed) { changed.rig.imu_noise = noise; }}}};
+           .strength = 1.0,  // any fault looks like noise, so it is measured late
+           .correction = Correction{.change = [noise](auto& changed) { changed.rig.imu_noise = noise; }},
+           .basis = CauseBasis::kInferred}};
 }
 
 constexpr double kBoxesHarm = 0.5;  ///< which features small boxes hide changes small errors by chance
@@ -146,15 +165,31 @@ double boxed_ratio(const datasets::SequenceInfo& info, const DetectionSet& set) 
   return std::min(1.0, area / (width * height));
 }
 
+/// Number of boxes of a frame that neither frame beside it has: people do not appear for one frame.
+std::ptrdiff_t single_boxes(const datasets::SequenceInfo& info, std::size_t i, const DetectionSet& set) {
+  std::vector<Box> beside;
+  for (const std::size_t k : {i - 1, i + 1}) {
+    const DetectionSet* const other =
+        k < info.frame_times.size() ? set_at(info, info.frame_times[k]) : nullptr;
+    if (other == nullptr) continue;
+    for (const Detection& detection : other->detections) beside.push_back(detection.box);
+  }
+  return std::ranges::count_if(set.detections, [&](const Detection& detection) {
+    return std::ranges::none_of(
+        beside, [&](const Box& box) { return intersection_over_union(detection.box, box) > kSamePlace; });
+  });
+}
+
 std::vector<Cause> box_causes(const datasets::SequenceInfo& info) {
   if (info.detections.empty()) return {};
   std::vector<Cause> causes;
   Cause missing{.id = "boxes_missing",
                 .name = "boxes missing",
                 .remedy = "`stillpoint detect SEQ --out SEQ/detections.txt`, with all frames",
-                .observed = true};
-  double boxed = 0.0, boxes = 0.0;
-  for (const Timestamp t : info.frame_times) {
+                .basis = CauseBasis::kShown};
+  double boxed = 0.0, boxes = 0.0, single = 0.0;
+  for (std::size_t i = 0; i < info.frame_times.size(); ++i) {
+    const Timestamp t = info.frame_times[i];
     const DetectionSet* const set = set_at(info, t);
     if (set == nullptr || set->state != DetectionState::kPresent) {
       missing.times.push_back(t);
@@ -162,7 +197,9 @@ std::vector<Cause> box_causes(const datasets::SequenceInfo& info) {
     }
     boxed += boxed_ratio(info, *set);
     boxes += static_cast<double>(set->detections.size());
+    single += static_cast<double>(single_boxes(info, i, *set));
   }
+  const bool flickers = single > kFlickering * boxes;
   const double frames = static_cast<double>(info.frame_times.size());
   if (static_cast<double>(missing.times.size()) > 0.03 * frames) {
     missing.evidence = fmt::format("{} of {:.0f} frames have none", missing.times.size(), frames);
@@ -172,11 +209,14 @@ std::vector<Cause> box_causes(const datasets::SequenceInfo& info) {
   if (boxed > kBoxedRatio * frames) {
     causes.push_back({.id = "boxes",
                       .name = "recorded boxes",
-                      .evidence = fmt::format("{:.1f} boxes per frame on {:.0f} % of the image",
-                                              boxes / frames, 100.0 * boxed / frames),
+                      .evidence = fmt::format("{:.1f} boxes per frame on {:.0f} % of the image, {:.0f} % of "
+                                              "them with none at their place in the frames beside it",
+                                              boxes / frames, 100.0 * boxed / frames, 100.0 * single / boxes),
                       .remedy = "--set detector.kind=none, or another network for `stillpoint detect`",
                       .strength = boxed / frames,
                       .correction = Correction{.settings = {"detector.kind=none"}},
+                      .basis = flickers ? CauseBasis::kShown : CauseBasis::kInferred,
+                      .needs_effect = !flickers,
                       .largest_ratio = kBoxesHarm});
   }
   return causes;
@@ -197,14 +237,15 @@ std::vector<Cause> feature_causes(const OdometryRun& run, const datasets::Sequen
                       .evidence = fmt::format("{:.0f} per frame in the mean", tracked / frames),
                       .remedy = "aim at textured, lit surfaces; check focus and exposure",
                       .strength = kFewFeatures * frames / std::max(1.0, tracked),
-                      .observed = true});
+                      .basis = CauseBasis::kShown});
   if (info.detections.empty() && dynamic > kManyDynamic * tracked)
     causes.push_back({.id = "boxes_missing",
                       .name = "boxes missing",
                       .evidence = fmt::format("{:.0f} % of the features move, and there are no boxes",
                                               100.0 * dynamic / tracked),
                       .remedy = "`stillpoint detect SEQ --out SEQ/detections.txt`",
-                      .strength = dynamic / tracked});
+                      .strength = dynamic / tracked,
+                      .basis = CauseBasis::kInferred});
   return causes;
 }
 

@@ -154,6 +154,24 @@ std::optional<AccelerometerAxes> accelerometer_axes(const datasets::SequenceInfo
   return found;
 }
 
+std::optional<double> upward_part_of_force(const datasets::SequenceInfo& info) {
+  constexpr double kSteady = 0.8;  // of the mean to the mean of the norms
+  constexpr double kMostInterval_s = 0.1;
+  const std::vector<StampedPose>& poses = info.ground_truth.trajectory.poses;
+  const Eigen::Quaterniond q_f_b = (info.rig.T_b_c * info.ground_truth.T_c_f).q.conjugate();
+  Eigen::Vector3d sum_w = Eigen::Vector3d::Zero();
+  double norms = 0.0;
+  for (const ImuSample& sample : info.imu) {
+    const Timestamp t = after(sample.t, -info.rig.time_offset_s);
+    const auto pose = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
+    if (pose == poses.end() || seconds_between(t, pose->t) > kMostInterval_s) continue;
+    sum_w += pose->T_w_f.q * (q_f_b * sample.accel_b);
+    norms += sample.accel_b.norm();
+  }
+  if (norms <= 0.0 || sum_w.norm() < kSteady * norms) return std::nullopt;
+  return sum_w.z() / sum_w.norm();
+}
+
 std::optional<InertialScale> inertial_depth_scale(const datasets::SequenceInfo& info,
                                                   const RecordingSurvey& survey) {
   std::vector<Sums> blocks;

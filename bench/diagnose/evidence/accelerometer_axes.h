@@ -26,6 +26,11 @@ struct AccelerometerAxes {
 [[nodiscard]] std::optional<AccelerometerAxes> accelerometer_axes(const datasets::SequenceInfo& info,
                                                                   const RecordingSurvey& survey);
 
+/// Part of the mean specific force along the z axis of the ground truth: 1 if that points up and the axes of
+/// the accelerometer are right, -1 if these are inverted.
+/// @return nullopt without ground truth, or if the force has no steady direction in it
+[[nodiscard]] std::optional<double> upward_part_of_force(const datasets::SequenceInfo& info);
+
 /// s with its standard deviation, by the differences between blocks.
 struct InertialScale {
   double scale = 1.0;

@@ -13,8 +13,7 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr int kRowStep_px = 4;  ///< every 4th row and column counts for the statistics
-constexpr int kCoarse_px = 4;
+constexpr int kRowStep_px = 4;       ///< every 4th row and column counts for the statistics
 constexpr double kMinLocated = 0.6;  ///< fraction of the frames with a pose
 
 bool equal(const cv::Mat& a, const cv::Mat& b) {
@@ -26,17 +25,19 @@ bool equal(const cv::Mat& a, const cv::Mat& b) {
   return true;
 }
 
-/// Mean difference of the pixels 1 apart to that of the pixels 4 apart.
-double sharpness_along(const cv::Mat& gray, int dx, int dy) {
-  double fine = 0.0, coarse = 0.0;
-  for (int y = 0; y + kCoarse_px < gray.rows; y += kRowStep_px) {
-    for (int x = 0; x + kCoarse_px < gray.cols; x += kRowStep_px) {
-      const int here = gray.at<std::uint8_t>(y, x);
-      fine += std::abs(gray.at<std::uint8_t>(y + dy, x + dx) - here);
-      coarse += std::abs(gray.at<std::uint8_t>(y + kCoarse_px * dy, x + kCoarse_px * dx) - here);
+/// Mean square of the Laplacian.
+double squared_laplacian(const cv::Mat& gray) {
+  double squares = 0.0, count = 0.0;
+  for (int y = kRowStep_px; y + 1 < gray.rows; y += kRowStep_px) {
+    const std::uint8_t *const above = gray.ptr(y - 1), *const row = gray.ptr(y),
+                              *const below = gray.ptr(y + 1);
+    for (int x = 1; x + 1 < gray.cols; ++x) {
+      const double laplacian = row[x - 1] + row[x + 1] + above[x] + below[x] - 4 * row[x];
+      squares += laplacian * laplacian;
+      count += 1.0;
     }
   }
-  return coarse > 0.0 ? fine / coarse : 1.0;
+  return count > 0.0 ? squares / count : 0.0;
 }
 
 void add_gray(const cv::Mat& gray, FrameStatistics& frame) {
@@ -55,7 +56,7 @@ void add_gray(const cv::Mat& gray, FrameStatistics& frame) {
   frame.deviation_gray = std::sqrt(std::max(0.0, squares / count - frame.mean_gray * frame.mean_gray));
   frame.dark_ratio /= count;
   frame.bright_ratio /= count;
-  frame.sharpness = std::min(sharpness_along(gray, 1, 0), sharpness_along(gray, 0, 1));
+  frame.sharpness = std::sqrt(squared_laplacian(gray)) / std::max(1.0, frame.deviation_gray);
 }
 
 void add_depth(const cv::Mat& depth, FrameStatistics& frame) {

@@ -21,8 +21,8 @@ struct FrameStatistics {
   double deviation_gray = 0.0;  ///< standard deviation of the gray values
   double dark_ratio = 0.0;      ///< fraction of pixels below 5
   double bright_ratio = 0.0;    ///< fraction of pixels above 250
-  /// Mean difference of pixels 1 apart to that of pixels 4 apart, in the direction with the smaller one:
-  /// small for blurred images.
+  /// Root mean square of the Laplacian to the standard deviation of the gray values: small for images that
+  /// are blurred along any direction (variance of the Laplacian, Pech-Pacheco et al. 2000).
   double sharpness = 0.0;
   double depth_ratio = 0.0;  ///< fraction of pixels with depth
   bool same_image = false;   ///< as the frame before
