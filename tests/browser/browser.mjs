@@ -17,7 +17,7 @@ export const ready = (page) => page.waitForFunction(() => document.documentEleme
 // Opens a file. Requests other than the file itself are recorded as problems unless `isAllowed` accepts them.
 // options.browser: another one than `browser`. Chromium without a GPU warns of the speed of WebGL.
 export async function open(file, { browser: other = browser, ...options } = {}, isAllowed = () => false, hash = "") {
-  const page = await other.newPage({ viewport: { width: 1300, height: 900 }, ...options });
+  const page = await other.newPage({ viewport: { width: 1400, height: 900 }, ...options });
   page.problems = [];
   page.on("console", (message) => { if (["error", "warning"].includes(message.type()) && !/GPU stall due to ReadPixels/.test(message.text())) page.problems.push(message.text()); });
   page.on("pageerror", (error) => page.problems.push(error.message));
@@ -55,6 +55,17 @@ export async function lightAndDarkDiffer(page) {
   await page.click("#theme");
   assert.notEqual(await background(), light);
   await page.click("#theme");
+}
+
+// On a phone: nothing is wider than the window, texts have contrast in both themes, the keyboard reaches all controls.
+export async function phoneSuffices(page) {
+  assert.equal(await page.evaluate(() => innerWidth), 390);
+  for (let i = 0; i < 2; ++i) {
+    assert.deepEqual(await page.evaluate(() => [document.documentElement.scrollWidth - innerWidth, ...[...document.querySelectorAll(".table")].filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.parentElement.textContent.slice(0, 60))]), [0], "wider than a phone");
+    await page.click("#theme");
+  }
+  await contrastSuffices(page);
+  await keyboardSuffices(page);
 }
 
 // Checks the contrast of all texts in both themes (WCAG 2.1, level AA, without the exception for large text).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints a store with a synthetic history, for `stillpoint store import`: 60 commits, two machines, a step in cost, a
-// drift of the error, and hostile names. Usage: node history_store.mjs [KEY...] > FILE
+// step of the error in the last two, a drift of the error, and hostile names. Usage: node history_store.mjs [KEY...] > FILE
 const COMMITS = 60, STEP = 40;
 const HOSTILE = `"><img src=x onerror=alert(1)>'\\$&%_#{}~^</script>\u202e\u{1F600}` + "long".repeat(60);
 
@@ -39,6 +39,7 @@ for (let i = 0; i < COMMITS; ++i) {
   runs.push(run(i, "stillpoint", "walking_xyz", "Desktop", { ate: near(0.02 * (1 + 0.003 * i), 0.01), cpu: near(10 + solve + track, 0.01), solve, track }));
   runs.push(run(i, "vo", "walking_xyz", "Desktop", { ate: near(i < 30 ? 0.03 : 0.036, 0.01), cpu: near(12, 0.01), solve: near(5, 0.01), track: near(2, 0.01) }));
   if (i % 2 === 0) runs.push(run(i, "vo", "walking_xyz", "Small device", { ate: near(0.03, 0.01), cpu: near(30, 0.01), solve: near(15, 0.01), track: near(6, 0.01) }));
+  if (i >= 20) runs.push(run(i, "stillpoint", "market", "Desktop", { ate: near(i < COMMITS - 2 ? 0.05 : 0.07, 0.01), cpu: 12, solve: 5, track: 2 }));
   if (i > 50) runs.push(run(i, HOSTILE, HOSTILE, HOSTILE, { ate: 0.01, cpu: 10, solve: 3, track: 2 }));
 }
 const accepted = [{ commit: hex(30), metric: "ate_rmse_m", variant: "vo", sequence: "", reason: `a faster solver <b>"worth" it</b>`, accepted: time(61) }];

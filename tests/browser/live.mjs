@@ -49,7 +49,10 @@ await test("at the end all runs are listed, the newest first, and report and das
   assert.equal(now.runs.length, 8);
   assert.deepEqual(now.runs.toReversed().slice(0, seen.length), seen, "runs that were seen keep their place");
   assert.match(now.text, /^8 of 8 runs$/);
-  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than a phone");
+  for (const width of [1400, 390]) {
+    await page.setViewportSize({ width, height: 844 });
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than " + width);
+  }
   assert.deepEqual(loads, ["", "events"]);
   await contrastSuffices(page);
   await keyboardSuffices(page);

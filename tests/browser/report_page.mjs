@@ -2,7 +2,7 @@
 // Tests of the report page. Run by pages.sh.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { browser, contrastSuffices, drawnCharts, keyboardSuffices, launch, lightAndDarkDiffer, open, selection, test } from "./browser.mjs";
+import { browser, contrastSuffices, drawnCharts, keyboardSuffices, launch, lightAndDarkDiffer, open, phoneSuffices, selection, test } from "./browser.mjs";
 
 const { PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
 
@@ -53,6 +53,33 @@ await test("the results are a matrix with a dot per run, sorted, filtered, and c
   assert.equal((await rows()).length, before.length);
 });
 
+await test("sequences of the matrix are chosen, its numbers have counts and intervals, and only metrics with data are offered", async () => {
+  const names = () => page.$$eval("#table-ate_rmse_m", ([table]) => [...table.rows].flatMap((row) => row.cells[0].textContent).concat([...table.tHead.rows[0].cells].map((cell) => cell.textContent)));
+  const all = await names(), boxes = page.locator("#column-list input");
+  await page.locator("#columns summary").press("Enter");
+  const out = await boxes.first().getAttribute("value");
+  await boxes.first().press("Space");
+  assert.ok(all.includes(out) && !(await names()).includes(out), out + " is still shown");
+  await page.click("[data-copy=CSV]");
+  assert.ok(!new RegExp(`(^|,)${out}(,|$)`, "m").test(await page.inputValue("#copied")), "copied as it is shown");
+  const other = await open(PAGE, { viewport: { width: 390, height: 844 } }, undefined, new URL(page.url()).hash);
+  assert.equal(await other.locator("#column-list input:not(:checked)").getAttribute("value"), out);
+  await other.close();
+  await boxes.first().press("Space");
+  assert.deepEqual(await names(), all);
+  const text = () => page.textContent("#table-ate_rmse_m tbody");
+  const before = await text();
+  await page.locator("#spread").press("Space");
+  assert.match(await text(), /n = \d/);
+  await page.locator("#spread").press("Space");
+  assert.equal(await text(), before);
+  for (const metric of await page.$$eval("#metric option", (options) => options.map((option) => option.value))) {
+    await page.selectOption("#metric", metric);
+    assert.match(await page.textContent(`#table-${metric} tbody`), /\d/, metric + " has no number");
+  }
+  await page.selectOption("#metric", "ate_rmse_m");
+});
+
 await test("runs of a cell and others are compared: paths, errors, status, faults, numbers, differences, frames at one time", async () => {
   const keys = await page.evaluate(() => {
     const { index } = window.stillpoint;
@@ -81,6 +108,20 @@ await test("runs of a cell and others are compared: paths, errors, status, fault
   await page.keyboard.press("End");
   assert.notDeepEqual(await frames(), first);
   assert.match(await page.textContent("#compare-at"), /^[23]\.\d\d s$/);
+});
+
+await test("a run is added and removed, counters and times per module are listed, and numbers have their definitions", async () => {
+  const compared = async () => (await selection(page, "compare")).runs.split("."), before = await compared();
+  const other = await page.evaluate((keys) => window.stillpoint.index.runs.findIndex((run) => !keys.includes(run.key)), before);
+  await page.selectOption("#compare-add", String(other));
+  assert.equal((await compared()).length, before.length + 1);
+  await page.locator("#compared button").last().press("Enter");
+  assert.deepEqual(await compared(), before);
+  await page.locator("#compare summary", { hasText: "Time per module" }).press("Enter");
+  assert.match(await page.textContent("#compare-modules tbody"), /feature_tracking \[ms\][\d.]+/);
+  assert.match(await page.textContent("#compare-metrics tbody"), /resets/);
+  const undefined_ = await page.$$eval("#compare-metrics tbody th, #results details:not([hidden]) dt", (names) => names.filter((name) => !name.title && name.tagName === "TH").map((name) => name.textContent));
+  assert.deepEqual(undefined_, [], "metrics without a definition");
 });
 
 await test("the reason of a missing value is shown to the keyboard, and ticks of small errors differ", async () => {
@@ -199,8 +240,7 @@ await test("the address holds the state of the page", async () => {
   assert.deepEqual(await state(other), before);
   assert.equal(await eyeOf(other), await eyeOf(page));
   assert.ok(before.theme && before.compared && before.frame && before.metric === "coverage" && before.view === "3d" && await eyeOf(page));
-  const wide = await other.evaluate(() => [document.documentElement.scrollWidth - innerWidth, ...[...document.querySelectorAll(".table")].filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.parentElement.textContent.slice(0, 60))]);
-  assert.deepEqual(wide, [0], "wider than a phone");
+  await phoneSuffices(other);
   await other.close();
   await page.goBack();
   assert.equal(await page.inputValue("#metric"), "ate_rmse_m");
