@@ -59,8 +59,8 @@
     const runs = new Map(page.index.runs.map((run) => [run.key, run]));
     own.columns.forEach((_, column) => {
       const lists = own.rows.map((row) => keysOf(row.cells[column]).map((key) => runs.get(key)).filter((run) => run));
-      const values = lists.flat().map((run) => valueOf(run, own.metric)).filter((value) => value !== null);
-      const low = Math.min(...values), high = Math.max(...values);
+      const values = lists.flat().map((run) => valueOf(run, own.metric)).filter((value) => value !== null).sort((a, b) => a - b);
+      const low = values[0], high = values.at(-1); // as arguments of Math.min, 100,000 values exceed the stack
       own.rows.forEach((row, i) => { if (lists[i].length) row.cells[column].append(strip(lists[i], own.metric, low, high, medianOf(row.cells[column], lists[i], own.metric))); });
     });
   }
