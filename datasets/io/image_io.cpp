@@ -61,7 +61,8 @@ std::optional<PngFile> read_header(std::string_view data) {
   const int color_type = static_cast<unsigned char>(data[9]);  // 0: gray, 2: RGB
   const bool supported = (color_type == 0 && (bits == 8 || bits == 16)) || (color_type == 2 && bits == 8);
   const bool plain = data[10] == 0 && data[11] == 0 && data[12] == 0;  // compression, filters, interlacing
-  const bool valid_size = width > 0 && height > 0 && width <= kMaxSide_px && height <= kMaxSide_px;
+  const bool valid_size = width > 0 && height > 0 && width <= kMaxSide_px && height <= kMaxSide_px &&
+                          std::int64_t{width} * height <= kMostPixels;
   if (!supported || !plain || !valid_size) return std::nullopt;
   return PngFile{.width = static_cast<int>(width),
                  .height = static_cast<int>(height),
@@ -258,7 +259,7 @@ LoadedImage load_image(const std::filesystem::path& file, int depth) {
   // By its content: OpenImageIO selects the decoder by the extension.
   LoadedImage image = is_png && is_jpeg ? image_module().decode(file_bytes(file).value_or(""), depth)
                                         : image_module().load(file, depth);
-  if (!image.problem.empty()) throw InputError(file.string(), image.problem + "; copy the file again");
+  if (!image.problem.empty()) throw InputError(file.string(), image.problem);
   return image;
 }
 
@@ -270,7 +271,7 @@ LoadedImage load_bytes(std::string_view bytes, const std::string& name, int dept
   if (is_png && bytes.find("IEND") == std::string_view::npos)
     throw InputError(name, "is a truncated PNG; copy the file again");
   LoadedImage image = image_module().decode(bytes, depth);
-  if (!image.problem.empty()) throw InputError(name, image.problem + "; copy the file again");
+  if (!image.problem.empty()) throw InputError(name, image.problem);
   return image;
 }
 

@@ -21,7 +21,8 @@ namespace stillpoint::datasets {
 /// Decodes a gray or color image (PNG, JPEG or any other format of OpenImageIO) of 8 or 16 bits per channel,
 /// of which the upper 8 are used.
 /// @return CV_8UC1, or CV_8UC3 in the order R, G, B; an alpha channel is dropped
-/// @throws InputError if the file is missing, truncated, undecodable, or has another bit depth
+/// @throws InputError if the file is missing, truncated, undecodable, has another bit depth, or more than
+/// 2^28 pixels
 [[nodiscard]] cv::Mat read_image(const std::filesystem::path& file);
 
 struct GrayImage {

@@ -5,6 +5,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -25,6 +26,8 @@ std::string reason(std::string text) {
   return text;
 }
 
+std::string with_remedy(const std::string& problem) { return problem + "; copy the file again"; }
+
 /// The pixels of an opened image.
 LoadedImage pixels_of(OIIO::ImageInput& input, int depth) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -38,11 +41,17 @@ LoadedImage pixels_of(OIIO::ImageInput& input, int depth) {
                             : depth == CV_16U ? OIIO::TypeDesc::UINT16
                                               : OIIO::TypeDesc::UINT8);
   if (spec.format != type && !deep_color && !has_meters) return image;
+  if (std::int64_t{spec.width} * spec.height > kMostPixels) {
+    image.problem = "has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                    " pixels, more than " + std::to_string(kMostPixels) + "; reduce its size";
+    return image;
+  }
   const int channels = spec.nchannels < 3 ? 1 : 3;
   image.pixels.create(spec.height, spec.width, CV_MAKETYPE(depth, channels));
   const bool complete = input.read_image(0, 0, 0, channels, type, image.pixels.data);
   const std::string problem = input.geterror();
-  if (!complete || !problem.empty()) image.problem = "is truncated or damaged (" + reason(problem) + ")";
+  if (!complete || !problem.empty())
+    image.problem = with_remedy("is truncated or damaged (" + reason(problem) + ")");
   return image;
 }
 
@@ -51,7 +60,7 @@ LoadedImage load(const std::filesystem::path& file, int depth) {
   OIIO::ImageSpec keep_alpha;
   keep_alpha.attribute("oiio:UnassociatedAlpha", 1);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &keep_alpha);
-  if (!input) return {.problem = "cannot be decoded (" + reason(OIIO::geterror()) + ")"};
+  if (!input) return {.problem = with_remedy("cannot be decoded (" + reason(OIIO::geterror()) + ")")};
   return pixels_of(*input, depth);
 }
 
@@ -66,10 +75,10 @@ LoadedImage decode(std::string_view bytes, int depth) {
   settings.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const bool is_png = bytes.starts_with("\x89PNG");
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(is_png ? "png" : "jpg");
-  if (!input) return {.problem = "cannot be decoded (" + reason(OIIO::geterror()) + ")"};
+  if (!input) return {.problem = with_remedy("cannot be decoded (" + reason(OIIO::geterror()) + ")")};
   OIIO::ImageSpec ignored;
   if (!input->open(is_png ? "memory.png" : "memory.jpg", ignored, settings))
-    return {.problem = "cannot be decoded (" + reason(input->geterror()) + ")"};
+    return {.problem = with_remedy("cannot be decoded (" + reason(input->geterror()) + ")")};
   return pixels_of(*input, depth);
 }
 

@@ -2,6 +2,7 @@
 /// OpenImageIO behind function pointers, in a module of its own (shared_module.h).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,8 +17,11 @@ struct LoadedImage {
   cv::Mat pixels;
   int channels = 0;     ///< of the file
   int bits = 0;         ///< per channel of the file
-  std::string problem;  ///< why the file cannot be decoded, else empty
+  std::string problem;  ///< why the file cannot be decoded, with the remedy; else empty
 };
+
+/// Larger images are refused before memory is taken for them.
+inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
 
 struct ImageModule {
   /// @param depth CV_8U or CV_16U: the expected depth

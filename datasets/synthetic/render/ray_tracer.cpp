@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 #include <stdexcept>
 
 #include "core/base/error.h"
@@ -24,6 +25,14 @@ RTCScene new_scene(RTCDevice device, RTCBuildQuality quality) {
   return scene;
 }
 
+/// Without the check, rays would hit nothing in a scene for which there is no memory.
+void commit(RTCDevice device, RTCScene scene) {
+  rtcCommitScene(scene);
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build a scene; report this fault");
+}
+
 /// Takes ownership of `geometry`. @param number RTCHit::geomID of its hits
 void attach(RTCScene scene, RTCGeometry geometry, unsigned number, RTCBuildQuality quality) {
   rtcSetGeometryBuildQuality(geometry, quality);
@@ -41,8 +50,10 @@ struct BufferKind {
 template <class Element>
 Element* new_buffer(RTCGeometry geometry, const BufferKind& kind, std::size_t count) {
   const auto& [type, slot, format] = kind;
-  return static_cast<Element*>(rtcSetNewGeometryBuffer(geometry, type, slot, format, sizeof(Element),
-                                                       std::max<std::size_t>(count, 1)));
+  void* const buffer =
+      rtcSetNewGeometryBuffer(geometry, type, slot, format, sizeof(Element), std::max<std::size_t>(count, 1));
+  if (buffer == nullptr) throw std::bad_alloc();
+  return static_cast<Element*>(buffer);
 }
 
 RTCGeometry quads_of(RTCDevice device, const World& world) {
@@ -95,7 +106,7 @@ RTCScene world_scene(RTCDevice device, const World& world) {
   RTCScene scene = new_scene(device, kQuality);
   if (!world.quads.empty()) attach(scene, quads_of(device, world), 0, kQuality);
   if (!world.mesh.triangles.empty()) attach(scene, triangles_of(device, world.mesh), 1, kQuality);
-  rtcCommitScene(scene);
+  commit(device, scene);
   return scene;
 }
 
@@ -184,7 +195,7 @@ RayTracer::Movers::Movers(const RayTracer& tracer, const MovingMesh& mesh)
   RTCDevice device = tracer.scene_->device;
   scene_->scene = new_scene(device, RTC_BUILD_QUALITY_LOW);
   attach(scene_->scene, triangles_of(device, mesh), 0, RTC_BUILD_QUALITY_LOW);
-  rtcCommitScene(scene_->scene);
+  commit(device, scene_->scene);
 }
 
 RayTracer::Movers::~Movers() = default;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -53,7 +54,8 @@ cv::Mat texture_image(const fs::path& file) {
 /// Adds the meshes of a file to the one of a world.
 class MeshCollector {
  public:
-  MeshCollector(fs::path file, World& world) : file_(std::move(file)), world_(world) {}
+  MeshCollector(fs::path file, World& world, std::size_t max_texels)
+      : file_(std::move(file)), world_(world), texels_left_(max_texels) {}
 
   void add(const aiScene& scene, const aiMesh& mesh) {
     if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0)
@@ -91,8 +93,22 @@ class MeshCollector {
     std::ranges::replace(path, '\\', '/');  // of programs on Windows
     const fs::path image = file_.parent_path() / path;
     const auto [found, is_new] = textures_.try_emplace(image, static_cast<int>(world_.textures.size()));
-    if (is_new) world_.textures.emplace_back(texture_image(image));
+    if (is_new) add_texture(image);
     return found->second;
+  }
+
+  void add_texture(const fs::path& image) {
+    if (!fs::exists(image))
+      throw InputError(file_.string(),
+                       "names the texture " + image.string() +
+                           ", which does not exist; copy it there, or export it with the mesh");
+    const cv::Mat texture = texture_image(image);
+    if (texture.total() > texels_left_)
+      throw InputError(file_.string(), fmt::format("has too many pixels in {} textures, with {}; reduce the "
+                                                   "sizes of the images",
+                                                   world_.textures.size() + 1, image.string()));
+    texels_left_ -= texture.total();
+    world_.textures.emplace_back(texture);
   }
 
   [[nodiscard]] MeshTriangle textured(const aiMesh& mesh, const aiFace& face, int texture) const {
@@ -126,40 +142,64 @@ class MeshCollector {
   fs::path file_;
   World& world_;
   std::map<fs::path, int> textures_;
+  std::size_t texels_left_;
 };
 
-/// Lines of a text file, or of the header of a PLY; empty if it cannot be read.
-std::vector<std::string> text_lines(const fs::path& file) {
+/// Calls `use` for each line of a text file, or of the header of a PLY, without the blanks before it.
+template <class Use>
+void for_each_line(const fs::path& file, const Use& use) {
   std::ifstream input(file, std::ios::binary);
-  std::vector<std::string> lines;
   for (std::string line; std::getline(input, line) && line != "end_header" && line != "end_header\r";) {
     if (line.ends_with('\r')) line.pop_back();
-    lines.push_back(std::move(line));
+    line.erase(0, line.find_first_not_of(" \t"));
+    use(line);
   }
-  return lines;
 }
 
-/// What follows a keyword at the begin of a line.
+bool is_same_letter(char a, char b) {
+  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+}
+
+/// What follows a keyword, in any case as for Assimp, at the begin of a line.
 std::vector<std::string> values_of(const fs::path& file, const std::string& keyword) {
   std::vector<std::string> values;
-  for (const std::string& line : text_lines(file)) {
-    const std::size_t begin = line.find_first_not_of(" \t");
-    if (begin == std::string::npos || line.compare(begin, keyword.size(), keyword) != 0) continue;
-    const std::size_t value = line.find_first_not_of(" \t", begin + keyword.size());
-    if (value != std::string::npos) values.push_back(line.substr(value));
-  }
+  for_each_line(file, [&](const std::string& line) {
+    const bool is_found = std::ranges::equal(line.substr(0, keyword.size()), keyword, is_same_letter);
+    const std::size_t value = is_found ? line.find_first_not_of(" \t", keyword.size()) : std::string::npos;
+    if (value != std::string::npos)
+      values.push_back(line.substr(value, line.find_last_not_of(" \t") + 1 - value));
+  });
   return values;
 }
 
-/// Assimp keeps coordinates per vertex, so that the last face of a vertex would determine those of all.
-void require_coordinates_of_vertices(const fs::path& file) {
+/// A file that is named at the end of a line, after options of a texture; its name may contain blanks.
+std::optional<fs::path> named_file(const fs::path& folder, std::string value) {
+  std::ranges::replace(value, '\\', '/');
+  for (std::size_t begin = 0; begin != std::string::npos;) {
+    const fs::path file = folder / value.substr(begin);
+    if (fs::is_regular_file(file)) return file;
+    begin = value.find_first_of(" \t", begin);
+    if (begin != std::string::npos) begin = value.find_first_not_of(" \t", begin);
+  }
+  return {};
+}
+
+constexpr const char* kPlyTexture = "comment TextureFile";
+
+/// Assimp keeps coordinates per vertex, so that the last face of a vertex would determine those of all, and
+/// one texture per PLY.
+void require_readable_textures(const fs::path& file) {
   if (file.extension() != ".ply") return;
-  for (const std::string& line : text_lines(file)) {
-    if (!line.starts_with("property list") || line.find("texcoord") == std::string::npos) continue;
+  for_each_line(file, [&](const std::string& line) {
+    if (!line.starts_with("property list") || line.find("texcoord") == std::string::npos) return;
     throw InputError(file.string(),
                      "has texture coordinates per face, which are not read; export it as OBJ, or with "
                      "coordinates or colors per vertex");
-  }
+  });
+  if (const std::size_t textures = values_of(file, kPlyTexture).size(); textures > 1)
+    throw InputError(file.string(), fmt::format("has {} textures, of which one is read; export it as OBJ, or "
+                                                "with one texture",
+                                                textures));
 }
 
 }  // namespace
@@ -167,14 +207,12 @@ void require_coordinates_of_vertices(const fs::path& file) {
 std::vector<fs::path> companions_of_mesh(const fs::path& file) {
   std::vector<fs::path> files;
   const auto add = [&](const std::vector<std::string>& names) {
-    for (std::string name : names) {
-      std::ranges::replace(name, '\\', '/');
-      name = name.substr(name.find_last_of(' ') + 1);  // after options of a texture
-      if (fs::is_regular_file(file.parent_path() / name)) files.push_back(file.parent_path() / name);
+    for (const std::string& name : names) {
+      if (const auto named = named_file(file.parent_path(), name)) files.push_back(*named);
     }
   };
   if (file.extension() == ".ply") {
-    add(values_of(file, "comment TextureFile"));
+    add(values_of(file, kPlyTexture));
     return files;
   }
   add(values_of(file, "mtllib"));
@@ -182,10 +220,10 @@ std::vector<fs::path> companions_of_mesh(const fs::path& file) {
   return files;
 }
 
-void read_mesh(const fs::path& file, World& world) {
+void read_mesh(const fs::path& file, World& world, std::size_t max_texels) {
   if (file.extension() != ".ply" && file.extension() != ".obj")
     throw InputError(file.string(), "is not named as a PLY or OBJ file; convert the mesh to .ply or .obj");
-  require_coordinates_of_vertices(file);
+  require_readable_textures(file);
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFile(
       file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
@@ -194,7 +232,7 @@ void read_mesh(const fs::path& file, World& world) {
                      std::string("cannot be read as a mesh: ") + importer.GetErrorString() +
                          "; export it with faces (reconstruct the surface of a point cloud first)");
   }
-  MeshCollector collector(file, world);
+  MeshCollector collector(file, world, max_texels);
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) collector.add(*scene, *scene->mMeshes[i]);
   if (world.mesh.triangles.empty())
     throw InputError(file.string(), "has no faces; reconstruct the surface of the point cloud first");

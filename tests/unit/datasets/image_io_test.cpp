@@ -143,6 +143,13 @@ TEST(ImageIo, TruncatedImagesAreErrors) {
   expect_input_error([&] { static_cast<void>(read_depth(folder.path() / "b.png")); }, {"b.png", "truncated"});
 }
 
+TEST(ImageIo, AnImageForWhichThereIsHardlyMemoryIsAnError) {
+  const TemporaryFolder folder;
+  expect_input_error(
+      [&] { static_cast<void>(read_image(folder.write("large.ppm", "P6\n60000 60000\n255\n"))); },
+      {"large.ppm", "60000 x 60000 pixels", "reduce its size"});
+}
+
 TEST(ImageIo, ANamedPipeIsAnErrorAndNotWaitedFor) {
   const TemporaryFolder folder;
   const std::filesystem::path pipe = folder.path() / "image.png";

@@ -176,7 +176,29 @@ TEST(MeshFile, WhatCannotBeRenderedIsNamed) {
   expect(folder.write("lost.obj",
                       "mtllib lost.mtl\nv 2 1 -1\nv 2 -1 -1\nv 2 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\n"
                       "usemtl wall\nf 1/1 2/2 3/3\n"),
-         {"none.png"});
+         {"lost.obj", "none.png", "does not exist; copy it there"});
+  expect(folder.write("two.ply",
+                      "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\n" +
+                          header.substr(header.find("element"))),
+         {"two.ply", "2 textures", "OBJ"});
+}
+
+TEST(MeshFile, TexturesThatNeedTooMuchMemoryAreRefused) {
+  const TemporaryFolder folder;
+  std::string materials, faces;
+  for (const std::string name : {"a", "b"}) {
+    datasets::write_png(folder.path() / (name + ".png"), cv::Mat(64, 64, CV_8UC3, cv::Scalar(9, 9, 9)));
+    materials += fmt::format("newmtl {0}\nmap_Kd {0}.png\n", name);
+    faces += fmt::format("usemtl {}\nf 1/1 2/2 3/3\n", name);
+  }
+  folder.write("m.mtl", materials);
+  const fs::path file =
+      folder.write("m.obj", "mtllib m.mtl\nv 2 1 -1\nv 2 -1 -1\nv 2 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\n" + faces);
+  World world, refused;
+  read_mesh(file, world, 2 * 64 * 64);
+  EXPECT_EQ(world.textures.size(), 2U);
+  expect_input_error([&] { read_mesh(file, refused, 2 * 64 * 64 - 1); },
+                     {"m.obj", "too many pixels in 2 textures", "reduce the sizes"});
 }
 
 TEST(MeshScene, ThePathMustBeThatOfALevelCameraInTheMesh) {
@@ -298,6 +320,21 @@ TEST(MeshScene, TheKeyOfARenderingDependsOnTexturesToo) {
   folder.write("wall.mtl", "newmtl other\n");
   keys.insert(request_key(request));
   EXPECT_EQ(keys.size(), 3U);
+}
+
+TEST(MeshScene, TheKeyOfARenderingDependsOnFilesWhoseNamesContainBlanks) {
+  const TemporaryFolder folder;
+  SynthRequest request = mesh_request(folder, 0.0);
+  request.mesh_file = folder.write("wall.obj", "mtllib my walls.mtl\nv 0 0 0\n");
+  std::set<std::string> keys;
+  for (const char* line : {"map_Kd my wall.png", "map_kd -clamp on my wall.png \r"}) {
+    folder.write("my walls.mtl", fmt::format("newmtl wall\n{}\n", line));
+    for (const char* image : {"red", "blue"}) {
+      folder.write("my wall.png", image);
+      keys.insert(request_key(request));
+    }
+  }
+  EXPECT_EQ(keys.size(), 4U);
 }
 
 }  // namespace
