@@ -253,8 +253,7 @@ namespace {
 constexpr int kMaxWidth_px = 400;
 constexpr int kJpegQuality = 70;  // text and thin circles stay legible
 
-void prepare_folder(const fs::path& folder) {
-  remove_images(folder);
+void create_folder(const fs::path& folder) {
   std::error_code problem;
   fs::create_directories(folder, problem);
   if (problem) throw InputError(folder.string(), "cannot be created (" + problem.message() + ")");
@@ -285,8 +284,26 @@ cv::Mat downscaled(const cv::Mat& image) {
 
 WorstFrames::WorstFrames(fs::path folder, std::size_t capacity, AnnotationStyle style,
                          const datasets::SequenceInfo& info)
-    : folder_(std::move(folder)), annotator_(style), worst_(capacity), truth_(ground_truth_of(info)) {
-  prepare_folder(folder_);
+    : folder_(std::move(folder)),
+      collected_(fs::path(folder_).concat(".new")),
+      annotator_(style),
+      worst_(capacity),
+      truth_(ground_truth_of(info)) {
+  create_folder(folder_);
+  remove_images(collected_);  // of a run that was killed
+  create_folder(collected_);
+}
+
+WorstFrames::~WorstFrames() {
+  std::error_code ignored;
+  fs::remove_all(collected_, ignored);
+}
+
+void WorstFrames::finish() {
+  remove_images(folder_);
+  fs::create_directories(folder_);
+  for (const fs::directory_entry& entry : fs::directory_iterator(collected_))
+    fs::rename(entry.path(), folder_ / entry.path().filename());
 }
 
 void WorstFrames::add(const FrameReport& report) {
@@ -304,6 +321,8 @@ std::optional<eval::MatchedPose> WorstFrames::matched(const OdometryUpdate& upda
   return eval::MatchedPose{.t = {}, .gt = *truth, .est = update.T_w_c};
 }
 
-fs::path WorstFrames::file_of(std::size_t frame) const { return folder_ / fmt::format("{:06}.jpg", frame); }
+fs::path WorstFrames::file_of(std::size_t frame) const {
+  return collected_ / fmt::format("{:06}.jpg", frame);
+}
 
 }  // namespace stillpoint::report

@@ -119,23 +119,30 @@ void remove_images(const std::filesystem::path& folder);
 
 /// Writes annotated images of a run's worst frames only: keeps `000042.jpg` for frame 42 if that is among the
 /// frames with the largest frame-to-frame error so far; files that drop out of this set are deleted. At most
-/// 400 px wide, about 25 kB each.
+/// 400 px wide, about 25 kB each. They are collected in FOLDER.new until the run ends.
 class WorstFrames {
  public:
-  /// @param folder   created if missing; *.jpg files of an earlier run are deleted
+  /// @param folder   created if missing
   /// @param capacity number of images to keep
   /// @throws InputError if the folder cannot be created
   WorstFrames(std::filesystem::path folder, std::size_t capacity, AnnotationStyle style,
               const datasets::SequenceInfo& info);
+  ~WorstFrames();  ///< deletes the images without `finish`
+  WorstFrames(const WorstFrames&) = delete;
+  WorstFrames& operator=(const WorstFrames&) = delete;
 
   /// Frames in order. @throws InputError if a file cannot be written
   void add(const FrameReport& report);
+
+  /// Replaces the *.jpg files of an earlier run in the folder. @throws std::filesystem::filesystem_error
+  void finish();
 
  private:
   [[nodiscard]] std::optional<eval::MatchedPose> matched(const OdometryUpdate& update) const;
   [[nodiscard]] std::filesystem::path file_of(std::size_t frame) const;
 
   std::filesystem::path folder_;
+  std::filesystem::path collected_;
   FrameAnnotator annotator_;
   eval::FrameToFrameError frame_to_frame_;
   eval::WorstFrames worst_;

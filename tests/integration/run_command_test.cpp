@@ -176,6 +176,26 @@ TEST(RunCommand, RemovesWhatOnlyAnEarlierRunWrote) {
   EXPECT_EQ(names_in(out.path()), names);
 }
 
+TEST(RunCommand, ImagesAreReplacedWhenTheNewRunHasEnded) {
+  const TemporaryFolder out;
+  const auto run = [&](std::vector<std::string> options) {
+    options.insert(options.end(), {"--max-frames", "20"});
+    return run_program(run_of(rendered_sequence(), out.path(), options)).exit_code;
+  };
+  ASSERT_EQ(run({"--images", "3"}), 0);
+  const std::vector<std::string> images = names_in(out.path() / "images");
+  ASSERT_EQ(images.size(), 3u);
+  const std::string heartbeat = (out.path() / "none" / "heartbeat").string();  // ends the run after its begin
+  for (const char* count : {"0", "1"}) {
+    EXPECT_EQ(run({"--images", count, "--heartbeat", heartbeat}), 2);
+    EXPECT_EQ(names_in(out.path() / "images"), images);
+    EXPECT_FALSE(fs::exists(out.path() / "images.new"));
+  }
+  ASSERT_EQ(run({"--images", "1"}), 0);
+  EXPECT_EQ(names_in(out.path() / "images").size(), 1u);
+  EXPECT_FALSE(fs::exists(out.path() / "images.new"));
+}
+
 TEST(RunCommand, WritesEachVariantToItsOwnFolder) {
   const TemporaryFolder out;
   const ProgramResult result = run_program(

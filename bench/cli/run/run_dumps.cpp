@@ -69,8 +69,6 @@ RunDumps::RunDumps(DumpRequest request, const datasets::SensorStream& stream, co
   if (!request_.video.empty()) video_.emplace(request_.video, style, report::mean_rate_hz(info.frame_times));
   if (request_.images > 0)
     worst_frames_.emplace(request_.folder / kImagesFolder, request_.images, style, info);
-  else
-    report::remove_images(request_.folder / kImagesFolder);
   if (!request_.map_cloud.empty())
     map_.emplace(info.rig.camera, datasets::VoxelMapOptions{.voxel_m = request_.map_voxel_m});
   if (!request_.mcap.empty()) {
@@ -109,7 +107,8 @@ void RunDumps::add_to_map(const FrameReport& report) {
   if (map_t_ && seconds_between(*map_t_, report.frame.t) < kInterval_s) return;
   map_t_ = report.frame.t;
   if (request_.closes_loops) {
-    map_frames_.push_back({report.tracked.id, report.frame.t, update.T_w_c, report.dynamic.mask});
+    map_frames_.push_back(
+        {report.tracked.id, report.frame.t, update.segment, update.T_w_c, report.dynamic.mask});
   } else {
     fuse(*map_, report.frame, update.T_w_c, report.dynamic.mask);
   }
@@ -118,6 +117,7 @@ void RunDumps::add_to_map(const FrameReport& report) {
 void RunDumps::fuse_optimized(const LoopRun* loops) {
   for (const MapFrame& kept : map_frames_) {
     Pose T_w_c = kept.T_w_c;
+    if (loops == nullptr && kept.segment != 0) continue;  // of a world that nothing relates to the first one
     if (loops != nullptr) {
       const std::vector<StampedPose>& poses = loops->optimized.poses;
       const auto found = std::ranges::lower_bound(poses, kept.t, {}, &StampedPose::t);
@@ -140,6 +140,12 @@ void RunDumps::add(const FrameReport& report) {
 std::vector<std::string> RunDumps::finish(const OdometryRun* run) {
   const LoopRun* const loops = run != nullptr && run->loops ? &*run->loops : nullptr;
   if (video_) attempt("--video", [&] { video_->finish(); });
+  attempt("--images", [&] {
+    if (worst_frames_)
+      worst_frames_->finish();
+    else
+      report::remove_images(request_.folder / kImagesFolder);  // of an earlier run
+  });
   if (recording_) attempt("--mcap", [&] { recording_->finish(loops); });
   if (map_) {
     attempt("--map-cloud", [&] {

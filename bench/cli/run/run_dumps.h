@@ -78,6 +78,7 @@ class RunDumps {
   struct MapFrame {
     std::int64_t index = 0;
     Timestamp t;
+    int segment = 0;
     Pose T_w_c;
     SemanticMask mask;
   };
@@ -85,8 +86,8 @@ class RunDumps {
   /// Adds a frame that entered the window and is located in the first world to the map, up to ten per second,
   /// without the pixels in the semantic mask. With loop closure the frame is kept for `fuse_optimized`.
   void add_to_map(const FrameReport& report);
-  /// Adds the kept frames at their optimized poses; without loops, because the run was interrupted, at those
-  /// that they had.
+  /// Adds the kept frames at their optimized poses; without loops, because the run was interrupted, those of
+  /// the first world at the poses that they had.
   void fuse_optimized(const LoopRun* loops);
 
   /// Calls `action`. @return whether it succeeded
