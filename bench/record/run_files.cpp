@@ -287,9 +287,11 @@ std::string trajectory_text(const RunResult& result) {
 
 namespace {
 
-/// Removes files that only an earlier run wrote. Its images are removed before this run may write its own.
-void remove_other_outputs(const std::filesystem::path& folder, const std::vector<OutputFile>& written) {
-  for (const std::string& name : run_layout().names) {
+/// Removes files that only an earlier command wrote; folders are left.
+/// @param names of all files that it may have written
+void remove_other_outputs(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                          const std::vector<OutputFile>& written) {
+  for (const std::string& name : names) {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(folder / name, ignored) &&
         std::ranges::find(written, name, &OutputFile::name) == written.end())
@@ -318,7 +320,17 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
     files.push_back({"keyframes.csv", keyframe_text(result.run.loops->report.keyframes)});
   }
   write_files(folder, files);
-  remove_other_outputs(folder, files);
+  remove_other_outputs(folder, run_layout().names, files);
+}
+
+void write_profile(const std::filesystem::path& folder, const std::vector<OutputFile>& files) {
+  write_files(folder, files);
+  std::vector<std::string> names = profile_layout().names;
+  if (std::filesystem::exists(folder / "result.json")) {
+    const std::vector<std::string> of_run = run_layout().names;
+    std::erase_if(names, [&](const std::string& name) { return std::ranges::count(of_run, name) > 0; });
+  }
+  remove_other_outputs(folder, names, files);
 }
 
 OutputLayout run_layout() {

@@ -45,6 +45,10 @@ struct RunManifest {
 /// @throws InputError if the folder cannot be written
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest);
 
+/// Writes the files of `profile`, and removes those that only an earlier profile wrote. What may be of a run
+/// in the same folder is kept.
+void write_profile(const std::filesystem::path& folder, const std::vector<OutputFile>& files);
+
 /// Contents of the output folder of `run`, and how an earlier output is recognized.
 [[nodiscard]] OutputLayout run_layout();
 [[nodiscard]] OutputLayout video_layout();    ///< of --video

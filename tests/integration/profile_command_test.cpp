@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -191,6 +193,26 @@ TEST(ProfileCommand, SimulatesADeviceWithItsPublishedStageCosts) {
   EXPECT_TRUE(report.at("score").at("ate_rmse_m").is_number());
   ASSERT_EQ(profile(again, device).exit_code, 0);
   EXPECT_EQ(read_json(again.path() / "device.json"), report);  // deterministic, as the costs are fixed
+}
+
+TEST(ProfileCommand, RemovesWhatOnlyAnEarlierProfileWrote) {
+  const TemporaryFolder folder;
+  const auto names = [&] {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+      found.insert(entry.path().filename().string());
+    return found;
+  };
+  const std::set<std::string> of_profile{"profile.json", "stacks.folded", "trace.json"};
+  const std::set<std::string> of_device{"device.json", "trajectory.tum"};
+  ASSERT_EQ(profile(folder).exit_code, 0);
+  EXPECT_EQ(names(), of_profile);
+  ASSERT_EQ(profile(folder, {"--device", "atlas_200", "--set", "backend.rate_hz=0"}).exit_code, 0);
+  EXPECT_EQ(names(), of_device);
+  folder.write("result.json", "{}");  // of a run, to which the trajectory may belong
+  ASSERT_EQ(profile(folder).exit_code, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"profile.json", "result.json", "stacks.folded", "trace.json",
+                                            "trajectory.tum"}));
 }
 
 TEST(ProfileCommand, RejectsAnUnknownDevice) {

@@ -131,8 +131,8 @@ int profile_on_device(const datasets::SensorStream& stream, DeviceRequest reques
       run_odometry(stream, request.spec, {.on_frame = {on_frame}, .stop_requested = interrupt_requested}));
   if (interrupt_requested()) return kExitInterrupted;
   run.timing = timing_of(run.result.run.summary, request.budget_ms);
-  write_files(request.folder, {{"device.json", json_of(run).dump(2) + "\n"},
-                               {"trajectory.tum", trajectory_text(run.result)}});
+  write_profile(request.folder, {{"device.json", json_of(run).dump(2) + "\n"},
+                                 {"trajectory.tum", trajectory_text(run.result)}});
   progress.clear();
   print(run);
   std::cout << request.folder.string() << '\n';
@@ -227,7 +227,7 @@ int profile_instructions(const InstructionRequest& request) {
   }
   const CallgrindCounts counts = parse_callgrind(eval::read_text_file(file), file.string());
   const std::vector<StageInstructions> stages = stage_instructions(counts, file.string());
-  write_files(request.folder, {{"instructions.json", json_of(request, stages, counts).dump(2) + "\n"}});
+  write_profile(request.folder, {{"instructions.json", json_of(request, stages, counts).dump(2) + "\n"}});
   print(stages, counts, request.frames);
   std::cout << fmt::format("{} (open callgrind.out in KCachegrind)\n", request.folder.string());
   return kExitOk;
@@ -444,9 +444,9 @@ int run_profile(const ProfileArguments& arguments) {
                            .variant = arguments.variant,
                            .mode = arguments.mode,
                            .cores = arguments.cores};
-  write_files(folder, {{"profile.json", profile_text(profile, title) + "\n"},
-                       {"trace.json", chrome_trace(profile.run.spans, "stillpoint " + name)},
-                       {"stacks.folded", folded_stacks(profile.run.spans)}});
+  write_profile(folder, {{"profile.json", profile_text(profile, title) + "\n"},
+                         {"trace.json", chrome_trace(profile.run.spans, "stillpoint " + name)},
+                         {"stacks.folded", folded_stacks(profile.run.spans)}});
   print_profile(profile);
   std::cout << drift_text(profile.drift);
   std::cout << fmt::format("{} (open trace.json in ui.perfetto.dev)\n", folder.string());
