@@ -130,12 +130,19 @@ std::int64_t peak_resident_bytes(pid_t pid) {
   return 0;
 }
 
-/// A pipe that exec closes; reading does not block.
-std::array<int, 2> make_pipe() {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe");
-  fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  return ends;
+/// Two pipes that exec closes; reading does not block.
+std::array<std::array<int, 2>, 2> make_pipes() {
+  std::array<std::array<int, 2>, 2> pipes{};
+  for (std::size_t i = 0; i < pipes.size(); ++i) {
+    if (pipe2(pipes[i].data(), O_CLOEXEC) != 0) {
+      const int error = errno;
+      if (i > 0) std::ranges::for_each(pipes[0], close);
+      errno = error;
+      throw_errno("pipe");
+    }
+    fcntl(pipes[i][0], F_SETFL, O_NONBLOCK);
+  }
+  return pipes;
 }
 
 double cpu_seconds(const timeval& time) {
@@ -175,8 +182,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
   std::vector<std::string> settings = spec.environment.value_or(std::vector<std::string>{});
   const std::vector<char*> environment = pointers_to(settings);
 
-  const std::array<int, 2> ends = make_pipe();
-  const std::array<int, 2> execution = make_pipe();
+  const auto [ends, execution] = make_pipes();
   const Launch launch{.program = spec.program.c_str(),
                       .arguments = arguments.data(),
                       .environment = spec.environment ? environment.data() : environ,

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/resource.h>
+
 #include <csignal>
+#include <system_error>
 #include <vector>
 
 #include "bench/profile/meters/process_usage.h"
@@ -28,6 +32,20 @@ TEST(ChildProcess, ReportsAProgramThatCannotBeStarted) {
   const ProcessResult end = run_process({.program = "no_such_program"});
   EXPECT_EQ(end.exit_code, 127);
   EXPECT_EQ(last_line(end.messages), "cannot be started");
+}
+
+TEST(ChildProcess, LeavesNoFileOpenWithoutDescriptorsForItsPipes) {
+  std::vector<int> unused;
+  for (int file = 0; unused.size() < 4; ++file) {
+    if (fcntl(file, F_GETFD) < 0) unused.push_back(file);
+  }
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit three{.rlim_cur = static_cast<rlim_t>(unused[3]), .rlim_max = before.rlim_max};  // of four
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &three), 0);
+  EXPECT_THROW(run_process(shell("true")), std::system_error);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  for (const int file : unused) EXPECT_LT(fcntl(file, F_GETFD), 0) << file;
 }
 
 TEST(ChildProcess, PassesOnlyTheGivenEnvironment) {
