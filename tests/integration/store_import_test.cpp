@@ -263,8 +263,13 @@ TEST(StoreImport, AnExperimentOfVslamLabHasItsFailedRunsAndNoScale) {
       results.import("evaluation/walk", {"--truth", results.path("benchmark"), "--system", "orb"});
   EXPECT_EQ(folder.out, "1 runs added, 0 already present\n") << folder.err;
   EXPECT_GT(results.ate_m(",orb,walk,desk,"), 0.3) << "nothing tells that it has no scale";
+  EXPECT_EQ(results.import("evaluation/walk/.", {"--truth", results.path("benchmark")}).exit_code, 0);
+  EXPECT_GT(results.ate_m(",walk,walk,desk,"), 0.3) << "named by its folder";
   expect_rejected(results.import("exp.yaml"), {"--results"});
   expect_rejected(results.import("evaluation/walk"), {"--truth"});
+  expect_rejected(results.import("exp.yaml", {"--results", results.path("benchmark"), "--truth",
+                                              results.path("benchmark")}),
+                  {"benchmark/walk", "does not exist", "correct --results"});
   results.write("exp.yaml", "walk:\n  Config: config.yaml\n  NumRuns: 2\n");
   expect_rejected(results.import("exp.yaml", options), {"exp.yaml", "walk.Module", "missing"});
   results.write("exp.yaml", "just a text");
@@ -282,6 +287,10 @@ TEST(StoreImport, ABrokenResultFolderAddsNothing) {
   expect_rejected(results.import("ov"), {"run2.txt:1"});
   results.write("ov/algorithms/vins/room/run2.txt", "3.5 0 0 0 0 0 0 1\n3.6 0 0 0 0 0 0 1\n");
   expect_rejected(results.import("ov"), {"run2.txt", "no pose at the time"});
+  for (const char* text : {"Segmentation fault, core dumped\n", "nan nan nan nan nan nan nan nan\n"}) {
+    results.write("ov/algorithms/vins/room/run2.txt", text);
+    expect_rejected(results.import("ov"), {"run2.txt"});
+  }
   EXPECT_FALSE(std::filesystem::exists(results.path("s.sqlite")));
 }
 

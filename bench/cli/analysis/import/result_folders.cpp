@@ -36,6 +36,7 @@ struct ResultFile {
 };
 
 constexpr std::string_view kKeyframes = "_KeyFrameTrajectory.csv";
+constexpr std::ptrdiff_t kColumns = 8;  // time, position, quaternion
 
 std::vector<fs::path> sorted_entries(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw InputError(folder.string(), "is no folder");
@@ -124,7 +125,8 @@ const fs::path& required_truth(const ResultSource& source) {
 
 /// Of the folder of one experiment, without its file.
 std::vector<ResultFile> vslam_lab_files(const ResultSource& source) {
-  const std::string name = fs::absolute(source.path / "").parent_path().filename().string();
+  const std::string name =
+      fs::absolute(source.path / "").lexically_normal().parent_path().filename().string();
   std::vector<ResultFile> files;
   for (const fs::path& dataset : folders_in(source.path)) {
     const fs::path truths = dataset_folder(required_truth(source), dataset.filename().string());
@@ -148,6 +150,11 @@ std::vector<ResultFile> experiment_files(const ResultSource& source) {
                      "is an experiment file; pass --results FOLDER, the evaluation folder of VSLAM-LAB");
   std::vector<ResultFile> files;
   for (const datasets::Experiment& experiment : datasets::read_experiments(source.path)) {
+    if (!fs::is_directory(source.results / experiment.name))
+      throw InputError((source.results / experiment.name).string(),
+                       "does not exist: the experiment was not executed, or its results are elsewhere; "
+                       "correct --results, or remove the experiment from " +
+                           source.path.string());
     for (const datasets::ExperimentSequence& entry : experiment.sequences) {
       const fs::path runs = dataset_folder(source.results / experiment.name, entry.dataset) / entry.sequence;
       const fs::path truth = dataset_folder(required_truth(source), entry.dataset) / entry.sequence;
@@ -176,14 +183,20 @@ std::vector<ResultFile> files_of(const ResultSource& source) {
   return is_vslam_lab ? vslam_lab_files(source) : evalio_files(source);
 }
 
-/// Whether a line begins with a number: without one, a system wrote no pose.
-bool has_rows(const std::string& text) {
+/// Whether a system wrote no pose: there are only blank lines, comments and a header. What else is there is
+/// for the reader of trajectories.
+bool is_without_poses(const std::string& text) {
   std::istringstream lines(text);
+  bool has_header = false;
   for (std::string line; std::getline(lines, line);) {
-    const std::size_t first = line.find_first_not_of(" \t");
-    if (first != std::string::npos && std::isdigit(static_cast<unsigned char>(line[first])) != 0) return true;
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    const bool is_header = std::isalpha(static_cast<unsigned char>(line[first])) != 0 &&
+                           std::ranges::count(line, ',') == kColumns - 1;
+    if (has_header || !is_header) return false;
+    has_header = true;
   }
-  return false;
+  return true;
 }
 
 /// The ground truths of sequences, each read once.
@@ -212,7 +225,7 @@ class GroundTruths {
 /// @throws InputError for a malformed file, or without a pose at the time of one of the ground truth
 RunOutcome scored(const ResultFile& file, const Trajectory& truth) {
   if (!fs::exists(file.estimate)) return {.outcome = Outcome::kLost, .detail = "wrote no trajectory"};
-  if (!has_rows(eval::read_text_file(file.estimate)))
+  if (is_without_poses(eval::read_text_file(file.estimate)))
     return {.outcome = Outcome::kLost, .detail = "wrote a trajectory without poses"};
   Trajectory estimate = eval::read_trajectory({.path = file.estimate}).trajectory;
   if (!file.has_scale) fit_scale(estimate, truth);

@@ -34,9 +34,9 @@ struct ResultSource {
 /// of the names of their files. Poses of estimate and ground truth are taken for those of the same body
 /// frame. A file without a pose is a failed run. The scale of monocular experiments is fitted to the ground
 /// truth.
-/// @throws InputError for a folder of none of these layouts, a malformed file, a missing ground truth, an
-/// estimate without a pose at the time of its ground truth, an option that has no effect, and as
-/// `add_imported`
+/// @throws InputError for a folder of none of these layouts, a malformed file, a missing ground truth or
+/// folder of an experiment, an estimate without a pose at the time of its ground truth, an option that has no
+/// effect, and as `add_imported`
 [[nodiscard]] MergeReport import_results(const ResultSource& source, const std::filesystem::path& store);
 
 }  // namespace stillpoint::bench
