@@ -197,14 +197,16 @@ namespace {
 struct DrawingFormat {
   const char* extension;
   const char* beginning;  ///< of its files
+  const char* name;       ///< of formats that the module writes, else null
   std::string (*text)(std::span<const Drawing>, double scale);
 };
 constexpr DrawingFormat kFormats[] = {
-    {".svg", "<svg", [](std::span<const Drawing> drawings, double) { return svg_text(stacked(drawings)); }},
-    {".pdf", "%PDF", [](std::span<const Drawing> drawings, double) { return pdf_text(drawings); }},
-    {".png", "\x89PNG",
+    {".svg", "<svg", nullptr,
+     [](std::span<const Drawing> drawings, double) { return svg_text(stacked(drawings)); }},
+    {".pdf", "%PDF", "PDF", [](std::span<const Drawing> drawings, double) { return pdf_text(drawings); }},
+    {".png", "\x89PNG", "PNG",
      [](std::span<const Drawing> drawings, double scale) { return png_bytes(stacked(drawings), scale); }},
-    {".html", "<!doctype html>",
+    {".html", "<!doctype html>", nullptr,
      [](std::span<const Drawing> drawings, double) { return html_text(drawings); }}};
 
 const DrawingFormat& format_of(const std::filesystem::path& file) {
@@ -217,7 +219,9 @@ const DrawingFormat& format_of(const std::filesystem::path& file) {
 }  // namespace
 
 void require_drawing_file(const std::filesystem::path& file, bench::OutputRules rules) {
-  rules.beginning = format_of(file).beginning;
+  const DrawingFormat& format = format_of(file);
+  if (format.name != nullptr) static_cast<void>(require_drawing_module(format.name));
+  rules.beginning = format.beginning;
   bench::require_safe_output(file, rules);
 }
 

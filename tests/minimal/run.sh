@@ -60,6 +60,9 @@ refused "reads none" run "$(mktemp -p "$scratch" XXXX.bag)"
 refused "reads none" eval "$(mktemp -p "$scratch" XXXX.mcap):/odom" "$scratch/run/trajectory.tum"
 refused "writes none" eval "$sequence/groundtruth.txt" "$scratch/run/trajectory.tum" --plot "$scratch/plot.pdf"
 
+refused "writes none" eval openloris "$scratch" --ground-truth "$scratch" --figure "$scratch/figure"
+[[ ! -e "$scratch/figure.svg" ]] || fail "eval openloris writes one of two figures"
+
 absent='assimp|embree|curl|microhttpd|archive|cairo|sqlite|libcrypto|bz2'
 ldd "$program" >"$scratch/output" || fail "ldd"
 if grep -E "$absent" "$scratch/output"; then fail "the program opens the libraries above"; fi
