@@ -197,7 +197,7 @@ struct MetricDescriptor {
 /// As `find_metric`; also null if the metric is not compared.
 [[nodiscard]] const MetricDescriptor* gated_metric(std::string_view id);
 
-/// Whether a stored value is no value of its metric: those that are compared are not negative.
+/// Whether a stored value is impossible for its metric: values that are compared are not negative.
 [[nodiscard]] bool is_impossible(const Metric& metric);
 
 /// The id in the name of a stored metric, "PROTOCOL/ID" or "ID".

@@ -18,8 +18,8 @@
 /// | /camera/annotations | foxglove.ImageAnnotations | features, colored by label, and boxes |
 /// | /camera/image | foxglove.CompressedImage | optional: JPEG |
 /// | /camera/depth | foxglove.RawImage | optional: 16 bits, in millimeters |
-/// | /camera/mask | foxglove.RawImage | optional: 255 where depth and boxes show an object, in frames of the
-/// window | | /landmarks | foxglove.PointCloud | features with measured depth, in the frame of the camera |
+/// | /camera/mask | foxglove.RawImage | optional: 255 where depth and boxes show an object |
+/// | /landmarks | foxglove.PointCloud | features with measured depth, in the frame of the camera |
 /// | /loops | stillpoint.Loop | recognized places with their outcome, written at the end |
 ///
 /// Coordinate frames: `world`, after a loss `world_N`; `body` (IMU), `camera`; `truth`, which the pose at the
