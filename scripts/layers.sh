@@ -71,7 +71,7 @@ row datasets/bags $messages $trajectories datasets/io datasets/calibration datas
 row datasets/formats $messages $trajectories datasets/io datasets/calibration datasets/bags
 row datasets/cache $messages datasets/io datasets/calibration datasets/formats
 row datasets $messages $trajectories datasets/io datasets/calibration datasets/bags datasets/formats datasets/cache
-row datasets/mapping $messages eval/io
+row datasets/mapping $messages datasets/io eval/io
 row datasets/minimal core/base eval/io datasets/bags datasets/formats
 row datasets/synthetic core/base core/geometry
 row datasets/synthetic/materials core/base datasets/synthetic
@@ -127,6 +127,7 @@ stored="core/base bench/model bench/store bench/analysis"
 row reports/tables $stored bench/config eval/metrics eval/statistics bench/systems
 row reports/drawing core/base core/geometry core/types datasets/io eval/io eval/metrics eval/openloris eval/protocols eval/statistics eval/trajectory bench/run bench/record \
   reports/tables
+row reports/drawing/evaluation core/base core/geometry core/types datasets/mapping eval/io eval/metrics eval/protocols eval/trajectory reports/drawing
 row reports/frames core/base core/types core/pipeline/runners bench/model bench/store bench/run datasets datasets/bags datasets/foxglove datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
 row reports/page $stored core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols bench/config bench/profile bench/record bench/systems bench/plan reports/tables \
@@ -145,7 +146,7 @@ row bench/cli/plan $execution bench/analysis bench/cli/data bench/profile/meters
 row bench/cli/analysis/import core/base core/types datasets/download datasets/io eval eval/io bench/model bench/process bench/store bench/store/maintenance
 row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan bench/run \
   bench/plan/execution bench/analysis bench/analysis/search bench/cli/analysis/import \
-  bench/executors bench/serve reports/tables reports/text reports/drawing reports/frames reports/page reports/dashboard reports/live
+  bench/executors bench/serve datasets/mapping reports/tables reports/text reports/drawing reports/drawing/evaluation reports/frames reports/page reports/dashboard reports/live
 row bench/cli/stats $execution eval/metrics bench/store bench/systems bench/plan bench/analysis reports/tables
 row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
 

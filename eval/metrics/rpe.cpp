@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "eval/metrics/ate.h"
+#include "eval/metrics/pose_pairs.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -196,14 +197,6 @@ double median_interval(std::span<const double> stamps) {
   return percentile(intervals, 0.5).value_or(0.0);
 }
 
-double median_interval(MatchView matches) {
-  std::vector<double> intervals;
-  intervals.reserve(matches.size());
-  for (std::size_t i = 1; i < matches.size(); ++i)
-    intervals.push_back(seconds_between(matches.time(i - 1), matches.time(i)));
-  return percentile(intervals, 0.5).value_or(0.0);
-}
-
 /// Length of a step between consecutive poses in a unit that is not the time.
 double step_of(const Pose& from, const Pose& to, RpeUnit unit) {
   if (unit == RpeUnit::kFrames) return 1.0;
@@ -276,9 +269,8 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
 }
 
 StrictRpeResult strict_rpe(MatchView matches, double delta_s) {
-  constexpr double kMaxDeltaFraction = 0.1;
   StrictRpeResult result;
-  result.tolerance_s = std::min(0.5 * median_interval(matches), kMaxDeltaFraction * delta_s);
+  result.tolerance_s = strict_tolerance_s(matches, delta_s);
   const PosePairs found = pairs_over_seconds(matches, delta_s, result.tolerance_s);
   RelativeErrors errors = relative_errors(matches, found.pairs, false);
   result.dropped = found.dropped;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "eval/metrics/pose_pairs.h"
 #include "eval/openloris/benchmark.h"
 #include "eval/trajectory/orientations.h"
 
@@ -224,10 +225,8 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
   return evaluation;
 }
 
-constexpr double kSegmentTolerance = 0.02;  // relative to the length of the segment, or to delta in meters
-constexpr double kAngleTolerance = 0.1;     // relative to delta in degrees
-constexpr double kMaxHold = 1.0;            // [s], validity of a pose
-constexpr double kStrictMaxGap = 0.11;      // [s], to each neighbor in the ground truth
+constexpr double kMaxHold = 1.0;        // [s], validity of a pose
+constexpr double kStrictMaxGap = 0.11;  // [s], to each neighbor in the ground truth
 
 /// Median interval of the ground truth [s]; 0 for fewer than two poses.
 double gt_interval_s(const Trajectory& trajectory) {
@@ -281,11 +280,7 @@ RpeEvaluation strict_rpe_evaluation(MatchView matches, const ProtocolOptions& op
       rpe.pairs = result.errors->translation_m.count;
     }
   } else {
-    const bool by_angle = options.rpe_unit == RpeUnit::kDegrees;
-    const std::vector<double> lengths =
-        by_angle ? path_angles_deg(matches) : path_lengths(matches, PathOf::kGroundTruth);
-    const double tolerance = by_angle ? kAngleTolerance : kSegmentTolerance;
-    const PosePairs found = pairs_over_meters(lengths, options.rpe_delta, tolerance * options.rpe_delta);
+    const PosePairs found = strict_pairs(matches, options.rpe_delta, options.rpe_unit);
     const RelativeErrors errors = relative_errors(matches, found.pairs);
     dropped = found.dropped;
     rpe.pairs = found.pairs.size();

@@ -147,9 +147,25 @@ Label centered_label(const Point2& at, std::string text, double size, Anchor anc
   return {{at.x, at.y + kHalfCapital * size}, std::move(text), size, anchor, theme::kBlack};
 }
 
-std::vector<std::pair<double, std::string>> ticks_of(const ChartAxis& axis, std::size_t most) {
+/// Numbers of ticks on an axis: as many as look well, and as many as do not touch.
+struct TickLimits {
+  std::size_t preferred = 2;
+  std::size_t most = 2;
+};
+
+/// Two ticks hardly tell a scale: a finer step is taken if its ticks do not touch.
+Ticks round_ticks(const ValueRange& range, const TickLimits& limits) {
+  constexpr std::size_t kFewTicks = 3;
+  Ticks ticks = nice_ticks(range, limits.preferred);
+  for (std::size_t most = limits.preferred + 1; ticks.values.size() < kFewTicks && most <= limits.most;
+       ++most)
+    ticks = nice_ticks(range, most);
+  return ticks;
+}
+
+std::vector<std::pair<double, std::string>> ticks_of(const ChartAxis& axis, const TickLimits& limits) {
   if (!axis.named_ticks.empty()) return axis.named_ticks;
-  const Ticks ticks = axis.step > 0.0 ? multiples_in(axis.range, axis.step) : nice_ticks(axis.range, most);
+  const Ticks ticks = axis.step > 0.0 ? multiples_in(axis.range, axis.step) : round_ticks(axis.range, limits);
   std::vector<std::pair<double, std::string>> named;
   for (const double value : ticks.values) named.emplace_back(value, tick_text(value, ticks.step));
   return named;
@@ -159,8 +175,8 @@ std::size_t most_ticks(double length, double spacing) {
   return static_cast<std::size_t>(std::clamp(length / spacing, 2.0, 12.0));
 }
 
-std::size_t most_y_ticks(const ChartLayout& layout, double height) {
-  return most_ticks(height, 2.2 * layout.font);
+TickLimits y_tick_limits(const ChartLayout& layout, double height) {
+  return {most_ticks(height, 2.2 * layout.font), most_ticks(height, 1.15 * layout.font)};
 }
 
 std::string shortened(const std::string& text, double size, double width) {
@@ -184,7 +200,7 @@ double left_margin(const Chart& chart, const ChartLayout& layout) {
   for (const ChartPanel& panel : chart.panels) {
     if (!panel.has_axes) continue;
     const double height = panel.height > 0.0 ? panel.height : layout.width;
-    for (const auto& [value, text] : ticks_of(panel.y, most_y_ticks(layout, height)))
+    for (const auto& [value, text] : ticks_of(panel.y, y_tick_limits(layout, height)))
       texts = std::max(texts, text_width(text, layout.font));
     has_title |= !panel.y.title.empty();
   }
@@ -202,9 +218,11 @@ void draw_x_axis(Drawing& drawing, const ChartPanel& panel, const PlotArea& area
   const bool has_texts = !panel.shares_x_below;
   const double width = area.bottom_right.x - area.top_left.x;
   double widest = 0.0;
-  for (const auto& [value, text] : ticks_of(panel.x, 8))
+  for (const auto& [value, text] : ticks_of(panel.x, {8, 8}))
     widest = std::max(widest, text_width(text, layout.font));
-  for (const auto& [value, text] : ticks_of(panel.x, most_ticks(width, widest + 1.6 * layout.font))) {
+  const TickLimits limits{most_ticks(width, widest + 1.6 * layout.font),
+                          most_ticks(width, widest + 0.6 * layout.font)};
+  for (const auto& [value, text] : ticks_of(panel.x, limits)) {
     const double x = area.at(value, area.y.low).x;
     if (panel.x.named_ticks.empty())
       drawing.marks.push_back(Polyline{{{x, area.top_left.y}, {x, bottom}}, theme::kGrid, theme::kGridWidth});
@@ -231,7 +249,7 @@ void draw_y_axis(Drawing& drawing, const ChartPanel& panel, const PlotArea& area
   const double height = area.bottom_right.y - area.top_left.y;
   const double room =
       left - layout.tick_gap() - layout.margin() - (panel.y.title.empty() ? 0.0 : 1.25 * layout.font);
-  for (const auto& [value, text] : ticks_of(panel.y, most_y_ticks(layout, height))) {
+  for (const auto& [value, text] : ticks_of(panel.y, y_tick_limits(layout, height))) {
     const double y = area.at(area.x.low, value).y;
     if (panel.y.named_ticks.empty())
       drawing.marks.push_back(
@@ -312,7 +330,14 @@ void draw_legend(Drawing& drawing, const Chart& chart, const ChartLayout& layout
   const double name_left = left + (kSampleEm + 0.6) * font;
   for (const LegendRow& row : chart.legend) {
     const double y = baseline - 0.36 * font;
-    drawing.marks.push_back(styled_line({{left, y}, {left + kSampleEm * font, y}}, row.style, row.width));
+    const double right = left + kSampleEm * font;
+    if (row.is_area) {
+      const double half = 0.3 * font;
+      drawing.marks.push_back(Polygon{
+          {{left, y - half}, {right, y - half}, {right, y + half}, {left, y + half}}, row.style.color});
+    } else {
+      drawing.marks.push_back(styled_line({{left, y}, {right, y}}, row.style, row.width));
+    }
     drawing.marks.push_back(Label{{name_left, baseline},
                                   shortened(row.name, font, numbers_left - name_left),
                                   font,

@@ -75,13 +75,14 @@ struct ChartPanel {
   std::function<void(Drawing&, const PlotArea&)> draw = {};
 };
 
-/// A row of the legend: sample of the line, name, and numbers below the legend's heads. A name that is too
-/// long is shortened.
+/// A row of the legend: sample of the line or area, name, and numbers below the legend's heads. A name that
+/// is too long is shortened.
 struct LegendRow {
   theme::LineStyle style;
   double width = theme::kEstimateWidth;
   std::string name;
   std::vector<std::string> numbers;
+  bool is_area = false;  ///< the sample is a filled area instead of a line
 };
 
 /// Scale of the colors of `theme::kErrorColors`; values beyond its ends have the colors of the ends.

@@ -10,6 +10,7 @@
 #include "reports/drawing/drawing_module.h"
 #include "reports/drawing/name_spans.h"
 #include "reports/drawing/theme.h"
+#include "reports/tables/base64.h"
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
@@ -94,16 +95,33 @@ struct SvgWriter {
     if (label.upwards) out += fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", label.at.x, label.at.y);
     out += fmt::format(">{}</text>\n", escape_html(label.text));
   }
+  void operator()(const Raster& raster) const {
+    const std::size_t rows = raster.pixels.size() / raster.columns;
+    Raster alone = raster;
+    alone.top_left = {0.0, 0.0};
+    alone.bottom_right = {static_cast<double>(raster.columns), static_cast<double>(rows)};
+    const std::string png =
+        png_bytes({.width = alone.bottom_right.x, .height = alone.bottom_right.y, .marks = {alone}}, 1.0);
+    out += fmt::format(
+        "<image x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" preserveAspectRatio=\"none\" "
+        "style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{}\"/>\n",
+        raster.top_left.x, raster.top_left.y, raster.bottom_right.x - raster.top_left.x,
+        raster.bottom_right.y - raster.top_left.y,
+        base64({reinterpret_cast<const unsigned char*>(png.data()), png.size()}));
+  }
 };
 
 }  // namespace
 
 std::string svg_text(const Drawing& drawing) {
   const char* const unit = drawing.unit_is_a_point ? "pt" : "";
+  const bool has_raster = std::ranges::any_of(
+      drawing.marks, [](const Mark& mark) { return std::holds_alternative<Raster>(mark); });
   std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.2f} {1:.2f}\" width=\"{0:.2f}{2}\" "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\"{4} viewBox=\"0 0 {0:.2f} {1:.2f}\" width=\"{0:.2f}{2}\" "
       "height=\"{1:.2f}{2}\" font-family=\"{3}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n",
-      drawing.width, drawing.height, unit, theme::kFonts);
+      drawing.width, drawing.height, unit, theme::kFonts,
+      has_raster ? " xmlns:xlink=\"http://www.w3.org/1999/xlink\"" : "");
   if (!drawing.title.empty()) out += fmt::format("<title>{}</title>\n", escape_html(drawing.title));
   out += "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   for (const Mark& mark : marks_of_spans(drawing.marks)) std::visit(SvgWriter{out}, mark);
@@ -167,6 +185,10 @@ struct MoveDown {
   void operator()(Polygon& polygon) const { move(polygon.points); }
   void operator()(Disc& disc) const { disc.center.y += by; }
   void operator()(Label& label) const { label.at.y += by; }
+  void operator()(Raster& raster) const {
+    raster.top_left.y += by;
+    raster.bottom_right.y += by;
+  }
 
  private:
   void move(std::vector<Point2>& points) const {

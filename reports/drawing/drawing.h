@@ -3,6 +3,7 @@
 /// format.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -57,7 +58,15 @@ struct Label {
   bool upwards = false;  ///< from bottom to top
 };
 
-using Mark = std::variant<Polyline, Polygon, Disc, Label>;
+/// An image of gray values, drawn without interpolation.
+struct Raster {
+  Point2 top_left;
+  Point2 bottom_right;
+  std::size_t columns = 0;
+  std::vector<unsigned char> pixels;  ///< row by row from the top, 0 black to 255 white; not empty
+};
+
+using Mark = std::variant<Polyline, Polygon, Disc, Label, Raster>;
 
 /// White background; later marks are drawn over earlier ones.
 struct Drawing {
@@ -68,8 +77,9 @@ struct Drawing {
   bool unit_is_a_point = false;  ///< in SVG one unit is 1/72 inch, as in PDF; else a pixel
 };
 
-/// A self-contained SVG 1.1 document, texts as text. Coordinates have 2 decimals, so that equal drawings give
-/// equal bytes.
+/// A self-contained SVG 1.1 document, texts as text, a `Raster` as PNG. Coordinates have 2 decimals, so that
+/// equal drawings give equal bytes.
+/// @throws InputError for a `Raster` as `png_bytes`
 [[nodiscard]] std::string svg_text(const Drawing& drawing);
 
 /// A self-contained page with one SVG element per drawing.

@@ -6,6 +6,7 @@
 #include <cairo.h>
 #include <pango/pangocairo.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -88,6 +89,29 @@ class Painter {
     cairo_move_to(context_, -shift,
                   -static_cast<double>(pango_layout_get_baseline(layout.get())) / PANGO_SCALE);
     pango_cairo_show_layout(context_, layout.get());
+    cairo_restore(context_);
+  }
+  void operator()(const Raster& raster) const {
+    const int columns = static_cast<int>(raster.columns);
+    const int rows = static_cast<int>(raster.pixels.size() / raster.columns);
+    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, columns, rows),
+                          &cairo_surface_destroy);
+    unsigned char* const data = cairo_image_surface_get_data(surface.get());
+    const int stride = cairo_image_surface_get_stride(surface.get());
+    for (int row = 0; row < rows; ++row) {
+      const unsigned char* const from = &raster.pixels[static_cast<std::size_t>(row) * raster.columns];
+      for (int column = 0; column < columns; ++column)  // blue, green, red and an unused byte
+        std::fill_n(data + row * stride + 4 * column, 4, from[column]);
+    }
+    cairo_surface_mark_dirty(surface.get());
+    cairo_save(context_);
+    cairo_translate(context_, raster.top_left.x, raster.top_left.y);
+    cairo_scale(context_, (raster.bottom_right.x - raster.top_left.x) / columns,
+                (raster.bottom_right.y - raster.top_left.y) / rows);
+    cairo_set_source_surface(context_, surface.get(), 0.0, 0.0);
+    cairo_pattern_set_filter(cairo_get_source(context_), CAIRO_FILTER_NEAREST);
+    cairo_rectangle(context_, 0.0, 0.0, columns, rows);
+    cairo_fill(context_);
     cairo_restore(context_);
   }
 

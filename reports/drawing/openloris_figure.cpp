@@ -136,13 +136,15 @@ void draw_runs(Drawing& drawing, const Panel& panel, const eval::OpenlorisScene&
   }
 }
 
-void draw_numbers(Drawing& drawing, const Panel& panel, const eval::OpenlorisSceneScore& score, double y) {
+void draw_numbers(Drawing& drawing, const Panel& panel, const eval::OpenlorisScene& scene, double y) {
+  const eval::OpenlorisSceneScore& score = scene.score;
   const double right = panel.left + panel.width;
-  drawing.marks.push_back(Label{{panel.left, y - 10.0},
-                                fmt::format("{:.1f}%", 100.0 * score.figure_correct_rate),
-                                kFontSize,
-                                Anchor::kLeft,
-                                theme::kBlack});
+  drawing.marks.push_back(
+      Label{{panel.left, y - 10.0},
+            scene.runs.empty() ? "-" : fmt::format("{:.1f}%", 100.0 * score.figure_correct_rate),
+            kFontSize,
+            Anchor::kLeft,
+            theme::kBlack});
   drawing.marks.push_back(Label{
       {right, y - 10.0}, or_dash(score.weighted_ate_rmse_m, 3), kFontSize, Anchor::kRight, theme::kBlack});
   drawing.marks.push_back(
@@ -179,7 +181,7 @@ Drawing openloris_figure(const eval::OpenlorisBenchmark& benchmark) {
     for (const std::string& system : systems) {
       const eval::OpenlorisScene& result = benchmark.systems.at(system).at(scene);
       draw_runs(drawing, panel, result, y);
-      draw_numbers(drawing, panel, result.score, y);
+      draw_numbers(drawing, panel, result, y);
       y += kRow;
     }
   }

@@ -3,7 +3,8 @@
 ///
 /// Black dots on the top line mark the start of each sequence. Per system, blue dots mark first poses and
 /// blue bars the spans with correct poses. Above the bars: correct rate over the whole scene and ATE [m];
-/// below: strict T.RPE [m/s] and R.RPE [deg/s], "-" where a system has no pose pair 1 s apart.
+/// below: strict T.RPE [m/s] and R.RPE [deg/s], "-" where a system has no pose pair 1 s apart, or no
+/// run.
 #pragma once
 
 #include "eval/openloris/benchmark.h"

@@ -13,6 +13,7 @@
 #include "bench/model/run_csv.h"
 #include "bench/model/run_notes.h"
 #include "bench/profile/timeline.h"
+#include "reports/tables/base64.h"
 #include "reports/tables/run_cells.h"
 #include "reports/tables/text_format.h"
 
@@ -25,19 +26,6 @@ constexpr std::uint16_t kNoValue = 0xFFFF;
 constexpr double kSteps = 65534.0;
 
 }  // namespace
-
-std::string base64(std::span<const unsigned char> bytes) {
-  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kAlphabet[group >> (18 - 6 * k) & 0x3F] : '=';
-  }
-  return text;
-}
 
 Json packed_series(std::span<const double> values) {
   double low = 0.0;

@@ -15,9 +15,6 @@
 
 namespace stillpoint::report {
 
-/// RFC 4648, with padding.
-[[nodiscard]] std::string base64(std::span<const unsigned char> bytes);
-
 /// {"low", "step", "data"}: value = low + step * (16-bit little-endian number), 65535 = missing. The
 /// quantization error is at most 1/131068 of the range.
 [[nodiscard]] nlohmann::ordered_json packed_series(std::span<const double> values);

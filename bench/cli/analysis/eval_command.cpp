@@ -25,7 +25,7 @@
 #include "eval/protocols/protocol.h"
 #include "eval/trajectory/alignment.h"
 #include "eval/trajectory/association.h"
-#include "reports/drawing/figures.h"
+#include "reports/drawing/evaluation/figures.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -208,10 +208,10 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
 
 /// What --plot and --per-pose must not overwrite.
 OutputRules output_rules(const EvalArguments& arguments) {
-  OutputRules rules{
-      .inputs = {arguments.files.ground_truth, arguments.files.times, arguments.files.covariance},
-      .force = arguments.force,
-      .beginning = report::per_pose_header()};
+  OutputRules rules{.inputs = {arguments.files.ground_truth, arguments.files.times,
+                               arguments.files.covariance, arguments.occupancy_grid},
+                    .force = arguments.force,
+                    .beginning = report::per_pose_header()};
   rules.inputs.insert(rules.inputs.end(), arguments.files.estimates.begin(), arguments.files.estimates.end());
   return rules;
 }
@@ -272,14 +272,24 @@ std::vector<Option> figure_options(EvalArguments& a) {
        &a.plot_mode},
       {"--path-mark", "Mark in the path figure: axes (of poses) or correspondences; may be repeated",
        &a.path_marks},
-      {"--colormap-min",
-       "Lower limit of the color bar of a single estimate [m]",
-       &a.colormap_min_m,
-       {0, 1e9}},
+      {"--path-color",
+       "Error that colors the path of a single estimate: " + enum_list<report::PathColor>() + " [position]",
+       &a.path_color},
+      {"--colormap-min", "Lower limit of the color bar [m or deg]", &a.colormap_min, {0, 1e9}},
       {"--colormap-max",
-       "Upper limit of the color bar of a single estimate [m] [its largest error]",
-       &a.colormap_max_m,
+       "Upper limit of the color bar [m or deg] [the largest error]",
+       &a.colormap_max,
        {1e-9, 1e9}},
+      {"--colormap-percentile",
+       "Upper limit of the color bar as a percentile of the errors",
+       &a.colormap_percentile,
+       {1e-9, 100}},
+      {"--occupancy-grid", "Map below the paths in x and y: YAML file of map_server, in the world of GT",
+       &a.occupancy_grid},
+      {"--error-axis",
+       "What the figures error, relative and transform are over: " + enum_list<report::ErrorAxis>() +
+           " [time; error: distance, too]",
+       &a.error_axis},
       {"--label",
        "Name of an estimate in tables and figures, in the order of EST; may be repeated [its file]",
        &a.labels},

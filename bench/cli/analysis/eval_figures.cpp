@@ -11,8 +11,9 @@
 #include "bench/cli/analysis/eval_results.h"
 #include "bench/cli/command_line.h"
 #include "core/base/error.h"
+#include "datasets/mapping/occupancy_grid.h"
 #include "eval/io/text_reader.h"
-#include "reports/drawing/figures.h"
+#include "reports/drawing/evaluation/figures.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -52,11 +53,42 @@ std::vector<report::FigureKind> figure_kinds(const EvalArguments& arguments) {
   return kinds;
 }
 
+bool draws(const EvalArguments& arguments, std::initializer_list<report::FigureKind> any_of) {
+  const std::vector<report::FigureKind> kinds = figure_kinds(arguments);
+  return !arguments.plot.empty() && std::ranges::any_of(kinds, [&](auto kind) {
+    return std::ranges::find(any_of, kind) != any_of.end();
+  });
+}
+
+/// @throws InputError naming the first option of the path figure that changes nothing of what is drawn
+void require_path_figure(const EvalArguments& arguments) {
+  const std::array<std::pair<const char*, bool>, 7> options{
+      {{"--plot-mode", !arguments.plot_mode.empty()},
+       {"--path-mark", !arguments.path_marks.empty()},
+       {"--path-color", !arguments.path_color.empty()},
+       {"--colormap-min", arguments.colormap_min > 0.0},
+       {"--colormap-max", arguments.colormap_max > 0.0},
+       {"--colormap-percentile", arguments.colormap_percentile > 0.0},
+       {"--occupancy-grid", !arguments.occupancy_grid.empty()}}};
+  const bool draws_path = !arguments.map.empty() || draws(arguments, {report::FigureKind::kPath});
+  for (const auto& [name, is_given] : options) {
+    if (!is_given) continue;
+    if (!draws_path)
+      throw InputError(name, "changes the path figure only; add --plot FILE.pdf --figure path");
+    const bool colors = std::string_view(name).find("color") != std::string_view::npos;
+    if (colors && arguments.files.estimates.size() > 1)
+      throw InputError(name, "only the path of a single estimate is colored by its error; give one EST");
+  }
+}
+
 /// @throws InputError for an option of the path figure that is unknown or has nothing to change
 report::PathOptions path_options(const EvalArguments& arguments) {
-  report::PathOptions options{.least_error_m = arguments.colormap_min_m};
+  require_path_figure(arguments);
+  report::PathOptions options{.least_error = arguments.colormap_min};
   if (!arguments.plot_mode.empty())
     options.mode = enum_of<report::PlotMode>("--plot-mode", arguments.plot_mode);
+  if (!arguments.path_color.empty())
+    options.color = enum_of<report::PathColor>("--path-color", arguments.path_color);
   for (const std::string& mark : arguments.path_marks) {
     if (mark != "axes" && mark != "correspondences") {
       throw InputError("--path-mark",
@@ -64,22 +96,28 @@ report::PathOptions path_options(const EvalArguments& arguments) {
     }
     (mark == "axes" ? options.pose_axes : options.correspondences) = true;
   }
-  if (arguments.colormap_max_m > 0.0) options.most_error_m = arguments.colormap_max_m;
-  const bool has_limits = options.most_error_m || options.least_error_m > 0.0;
-  if (has_limits && arguments.files.estimates.size() > 1) {
-    throw InputError(options.most_error_m ? "--colormap-max" : "--colormap-min",
-                     "only the path of a single estimate is colored by its error; give one EST");
-  }
-  const bool changes_path = options.mode || has_limits || !arguments.path_marks.empty();
-  const std::vector<report::FigureKind> kinds = figure_kinds(arguments);
-  const bool draws_path =
-      !arguments.map.empty() ||
-      (!arguments.plot.empty() && std::ranges::find(kinds, report::FigureKind::kPath) != kinds.end());
-  if (changes_path && !draws_path) {
-    throw InputError("--plot-mode, --path-mark, --colormap-min, --colormap-max",
-                     "change the path figure only; add --plot FILE.pdf --figure path");
-  }
+  if (arguments.colormap_max > 0.0) options.most_error = arguments.colormap_max;
+  if (arguments.colormap_percentile > 0.0) options.most_percentile = arguments.colormap_percentile;
+  if (options.most_error && arguments.colormap_percentile > 0.0)
+    throw InputError("--colormap-percentile", "is another upper limit than --colormap-max; omit one of them");
+  const bool has_plane =
+      !options.mode || *options.mode == report::PlotMode::kXy || *options.mode == report::PlotMode::kYx;
+  if (!arguments.occupancy_grid.empty() && !has_plane)
+    throw InputError("--occupancy-grid", "is a map in x and y; use --plot-mode xy or yx");
   return options;
+}
+
+/// @throws InputError for an axis that is unknown, or over which nothing is drawn
+std::optional<report::ErrorAxis> error_axis(const EvalArguments& arguments) {
+  if (arguments.error_axis.empty()) return std::nullopt;
+  const auto axis = enum_of<report::ErrorAxis>("--error-axis", arguments.error_axis);
+  if (!draws(arguments,
+             {report::FigureKind::kError, report::FigureKind::kRelative, report::FigureKind::kTransform})) {
+    throw InputError(
+        "--error-axis",
+        "changes the figures error, relative and transform only; add --plot FILE.pdf --figure error");
+  }
+  return axis;
 }
 
 /// A figure, or nullopt with a warning if it has no data and was not named.
@@ -103,6 +141,7 @@ void require_figures(const EvalArguments& arguments, const OutputRules& rules) {
   }
   static_cast<void>(figure_kinds(arguments));
   static_cast<void>(path_options(arguments));
+  static_cast<void>(error_axis(arguments));
   static_cast<void>(width_mm(arguments.width));
   if (!arguments.figures.empty() && arguments.plot.empty())
     throw InputError("--figure", "needs a file: --plot FILE.pdf");
@@ -118,6 +157,13 @@ void write_figures(const EvalArguments& arguments, const Trajectory& gt,
     plotted.push_back({run.name, &run.est, &run.evaluations.front()});
   report::FigureInput input{.gt = gt, .runs = plotted, .offset_s = arguments.offset_s};
   input.path = path_options(arguments);
+  std::optional<datasets::OccupancyGrid> grid;
+  if (!arguments.occupancy_grid.empty())
+    input.path.grid = &grid.emplace(datasets::read_occupancy_grid(arguments.occupancy_grid));
+  input.error_axis = error_axis(arguments);
+  const RpeDelta delta = rpe_deltas(arguments).front();
+  input.rpe_delta = delta.value;
+  input.rpe_unit = delta.unit;
   if (arguments.max_difference_s > 0.0) input.max_gap_s = arguments.max_difference_s;
   const report::FigureSize size{width_mm(arguments.width), arguments.font_size_pt};
   if (!arguments.plot.empty()) {

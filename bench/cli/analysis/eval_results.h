@@ -37,8 +37,12 @@ struct EvalArguments {
   std::vector<std::string> figures;
   std::string plot_mode;
   std::vector<std::string> path_marks;
-  double colormap_min_m = 0.0;
-  double colormap_max_m = 0.0;
+  std::string path_color;
+  double colormap_min = 0.0;
+  double colormap_max = 0.0;
+  double colormap_percentile = 0.0;
+  std::string occupancy_grid;
+  std::string error_axis;
   std::vector<std::string> labels;
   std::string width = "column";
   double font_size_pt = report::theme::kFontSizePt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/drawing/figures.h"
+#include "reports/drawing/evaluation/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -263,11 +263,123 @@ TEST(PathFigure, ConnectsPosesWithTheGroundTruth) {
 TEST(PathFigure, HasTheLimitsOfItsColorBar) {
   const CircleRuns circles;
   FigureInput input = circles.one();
-  input.path.least_error_m = 0.01;
-  input.path.most_error_m = 0.03;
+  input.path.least_error = 0.01;
+  input.path.most_error = 0.03;
   EXPECT_NE(svg_text(figure(FigureKind::kPath, input, {})).find(">0.030</text>"), std::string::npos);
-  input.path.most_error_m = 0.01;
+  input.path.most_error = 0.01;
   expect_input_error([&] { static_cast<void>(figure(FigureKind::kPath, input, {})); }, {"--colormap-min"});
+}
+
+// The error grows with time: it is 0.1 m times the fraction of the path, after alignment at most 0.1 m.
+TEST(PathFigure, IsColoredByTheErrorThatIsAskedFor) {
+  const CircleRuns circles;
+  FigureInput input = circles.one();
+  const auto has = [&](const std::string& text) {
+    return svg_text(figure(FigureKind::kPath, input, {})).find(">" + text + "</text>") != std::string::npos;
+  };
+  EXPECT_TRUE(has("position error [m]") && has("RMSE [m]"));
+  input.path.color = PathColor::kRotation;
+  EXPECT_TRUE(has("rotation error [deg]") && has("RMSE [deg]"));
+  input.path.color = PathColor::kRelative;
+  EXPECT_TRUE(has("relative position error [m] over 1 s"));
+  EXPECT_TRUE(has(short_number(statistics_of(relative_series(input, circles.runs[0]).position_m)->rmse)));
+}
+
+// One occupied cell of 0.1 m in a map that is turned by 90 deg: its columns go along y, its rows from below
+// along -x.
+TEST(PathFigure, HasAMapBelowThePaths) {
+  const CircleRuns circles;
+  datasets::OccupancyGrid grid{.columns = 40,
+                               .rows = 40,
+                               .resolution_m = 0.1,
+                               .origin_x_m = 2.0,
+                               .origin_y_m = -2.0,
+                               .yaw_rad = 0.5 * std::numbers::pi,
+                               .pixels = std::vector<std::uint8_t>(1600, 255)};
+  // x = 2 - 0.1 (rows from below), y = -2 + 0.1 column.
+  const std::size_t from_below = 20;
+  const std::size_t column = 30;  // y in [1, 1.1), x in (-0.1, 0]
+  grid.pixels[(39 - from_below) * 40 + column] = 0;
+  FigureInput input = circles.both();
+  input.path.grid = &grid;
+  for (const PlotMode mode : {PlotMode::kXy, PlotMode::kYx}) {
+    input.path.mode = mode;
+    const Drawing drawing = figure(FigureKind::kPath, input, {});
+    const auto mark =
+        std::ranges::find_if(drawing.marks, [](const Mark& m) { return std::holds_alternative<Raster>(m); });
+    ASSERT_NE(mark, drawing.marks.end());
+    const auto& raster = std::get<Raster>(*mark);
+    double x = 0.0;  // center of the dark pixels, as a fraction of the plot area
+    double y = 0.0;
+    double count = 0.0;
+    const std::size_t rows = raster.pixels.size() / raster.columns;
+    for (std::size_t i = 0; i < raster.pixels.size(); ++i) {
+      if (raster.pixels[i] > 140) continue;
+      x += (static_cast<double>(i % raster.columns) + 0.5) / static_cast<double>(raster.columns);
+      y += (static_cast<double>(i / raster.columns) + 0.5) / static_cast<double>(rows);
+      ++count;
+    }
+    ASSERT_GT(count, 0.0);
+    // Where the truth starts, (0, -2), and where it is at its highest, (0, 2), give the scale.
+    const std::vector<Polyline> truth = lines_of(drawing, theme::kBlack, theme::kTruthWidth);
+    ASSERT_EQ(truth.size(), 1U);
+    const auto [left, right] = std::ranges::minmax(truth[0].points, {}, &Point2::x);
+    const auto [top, bottom] = std::ranges::minmax(truth[0].points, {}, &Point2::y);
+    const double at_x = raster.top_left.x + x / count * (raster.bottom_right.x - raster.top_left.x);
+    const double at_y = raster.top_left.y + y / count * (raster.bottom_right.y - raster.top_left.y);
+    const double to_right = -2.0 + 4.0 * (at_x - left.x) / (right.x - left.x);
+    const double up = -2.0 + 4.0 * (bottom.y - at_y) / (bottom.y - top.y);
+    EXPECT_NEAR(mode == PlotMode::kXy ? to_right : up, -0.05, 0.02);
+    EXPECT_NEAR(mode == PlotMode::kXy ? up : to_right, 1.05, 0.02);
+  }
+  grid.origin_x_m = 100.0;
+  expect_input_error([&] { static_cast<void>(figure(FigureKind::kPath, input, {})); },
+                     {"--occupancy-grid", "ground truth"});
+}
+
+TEST(ErrorFigure, IsOverTheAxisThatIsAskedFor) {
+  const CircleRuns circles;
+  FigureInput input = circles.both();
+  const auto has = [&](FigureKind kind, const char* text) {
+    return svg_text(figure(kind, input, {})).find(std::string(">") + text + "</text>") != std::string::npos;
+  };
+  input.error_axis = ErrorAxis::kIndex;
+  EXPECT_TRUE(has(FigureKind::kError, "index of the pose") && !has(FigureKind::kError, "time [s]"));
+  // The poses from 8 to 12 s are missing: over the index, both parts of the line meet.
+  const std::vector<Polyline> lines =
+      lines_of(figure(FigureKind::kError, input, {}), theme::kEstimates[0].color, theme::kEstimateWidth);
+  ASSERT_GE(lines.size(), 2U);
+  const double width = lines[1].points.back().x - lines[0].points.front().x;
+  EXPECT_NEAR(lines[1].points.front().x - lines[0].points.back().x, width / 161.0, 1.0);  // one pose
+  EXPECT_TRUE(has(FigureKind::kRelative, "distance error [m]"));
+  input.error_axis = ErrorAxis::kDistance;
+  EXPECT_TRUE(has(FigureKind::kTransform, "distance traveled [m]"));
+}
+
+// The estimate moves by 0.1 / 200 m too far along x in each pose, 0.005 m in 1 s, after an alignment that
+// turns it little: the relative error is 0.005 m where nothing is missing.
+TEST(RelativeFigure, HasTheErrorsOfPosesAnIntervalApart) {
+  const CircleRuns circles;
+  const FigureInput input = circles.one();
+  const RelativeSeries series = relative_series(input, circles.runs[0]);
+  ASSERT_FALSE(series.position_m.empty());
+  EXPECT_EQ(series.position_m.size(), series.distance_m.size());
+  EXPECT_NEAR(series.position_m.front().t_s, 1.0, 1e-9);  // the time of the later pose
+  for (std::size_t i = 0; i < series.position_m.size(); ++i) {
+    const double t_s = series.position_m[i].t_s;
+    EXPECT_FALSE(t_s > 8.05 && t_s < 12.95) << t_s;  // one of both poses is missing
+    EXPECT_NEAR(series.position_m[i].at.y, 0.005, 1e-6);
+    EXPECT_LE(series.distance_m[i].at.y, series.position_m[i].at.y + 1e-9);
+    EXPECT_NEAR(
+        series.transform[i].at.y,
+        std::hypot(series.position_m[i].at.y,
+                   std::sqrt(8.0) * std::sin(0.5 * series.rotation_deg[i].at.y * std::numbers::pi / 180.0)),
+        1e-12);
+  }
+  FigureInput long_interval = input;
+  long_interval.rpe_delta = 100.0;
+  expect_input_error([&] { static_cast<void>(figure(FigureKind::kRelative, long_interval, {})); },
+                     {"--figure relative", "100 s apart", "--rpe-delta"});
 }
 
 TEST(ErrorFigure, HasLinesOfMeanAndMedianForASingleEstimate) {
@@ -306,7 +418,34 @@ TEST(BarsFigure, HasABarOfEachStatisticAndEstimate) {
     const auto* const polygon = std::get_if<Polygon>(&mark);
     return polygon != nullptr && polygon->color.red == theme::kEstimates[1].color.red;
   });
-  EXPECT_EQ(bars, 12);  // six of positions, six of rotations
+  EXPECT_EQ(bars, 13);  // six of positions, six of rotations, the sample of the legend
+}
+
+// Dashes of line styles mean nothing beside bars and boxes.
+TEST(Figures, HaveAreasInTheLegendWhereNoLinesAreDrawn) {
+  const CircleRuns circles;
+  for (const FigureKind kind : {FigureKind::kBars, FigureKind::kBox, FigureKind::kRpe}) {
+    const Drawing drawing = figure(kind, circles.both(), {});
+    EXPECT_TRUE(std::ranges::none_of(drawing.marks, [](const Mark& mark) {
+      const auto* const line = std::get_if<Polyline>(&mark);
+      return line != nullptr && !line->dashes.empty();
+    }));
+  }
+}
+
+TEST(Figures, HaveThreeTicksOrMoreOnAnAxis) {
+  CircleRuns circles;
+  // Rotations of up to 3.5 deg: steps of 2 deg, which column width has room for, give 0 and 2 only.
+  for (Trajectory* path : {&circles.gt, &circles.near}) {
+    for (std::size_t i = 0; i < path->poses.size(); ++i) {
+      const double deg = -0.8 + 4.2 * static_cast<double>(i % 2);
+      path->poses[i].T_w_f.q = Eigen::AngleAxisd(deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX());
+    }
+  }
+  circles.near_errors = eval::evaluate("strict:se3", {circles.gt, circles.near, circles.options});
+  const std::string svg = svg_text(figure(FigureKind::kRotation, circles.one(), {}));
+  EXPECT_NE(svg.find(">1</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">3</text>"), std::string::npos);
 }
 
 TEST(Figures, ExplainTheirBoxesInWholeLines) {

@@ -45,6 +45,16 @@ TEST(OpenlorisFigure, ShowsRatesAndMissingData) {
   EXPECT_TRUE(has_label(figure, "DSO"));
 }
 
+// A scene of which a system has no run at all has no rate: 0 % is that of runs that failed.
+TEST(OpenlorisFigure, HasNoRateWithoutARun) {
+  eval::OpenlorisBenchmark benchmark = small_benchmark();
+  benchmark.gt_durations_s["home"] = {{1, 10.0}};
+  benchmark.systems["dso"]["home"].score = eval::score_openloris_scene({}, benchmark.gt_durations_s["home"]);
+  EXPECT_FALSE(has_label(openloris_figure(benchmark), "0.0%"));
+  benchmark.systems["dso"]["home"].runs[1];
+  EXPECT_TRUE(has_label(openloris_figure(benchmark), "0.0%"));
+}
+
 TEST(OpenlorisFigure, KeepsALongHeadingInsideItsPanel) {
   eval::OpenlorisBenchmark benchmark = small_benchmark();
   const std::string scene = "cafe + " + std::string(200, 'x');

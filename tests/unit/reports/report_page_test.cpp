@@ -14,6 +14,7 @@
 #include "bench/store/store_writer.h"
 #include "reports/page/chart_data.h"
 #include "reports/page/page_data.h"
+#include "reports/tables/base64.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

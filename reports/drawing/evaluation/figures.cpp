@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/drawing/figures.h"
+#include "reports/drawing/evaluation/figures.h"
 
 #include <algorithm>
 #include <array>
@@ -11,92 +11,12 @@
 
 #include "core/base/error.h"
 #include "eval/metrics/rpe.h"
+#include "reports/drawing/evaluation/figure_parts.h"
 
 namespace stillpoint::report {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-using ErrorStatistics = std::optional<eval::Statistics> eval::Evaluation::*;
-
-/// Height of a panel over time, per width of the figure.
-constexpr double kPanelRatio = 0.24;
-
-double panel_height(const FigureSize& size) { return kPanelRatio * size.width_mm * 72.0 / 25.4; }
-
-/// Errors of the poses of a run over time [s since the first pose of the ground truth].
-std::vector<CurvePoint> errors_of(const FigureInput& input, const PlottedRun& run,
-                                  double eval::PoseError::*error) {
-  // The strict protocols add the offset to the stamps of the estimate, the others only when associating.
-  const double offset_s = run.evaluation->protocol.starts_with("strict:") ? 0.0 : input.offset_s;
-  std::vector<CurvePoint> points;
-  points.reserve(run.evaluation->per_pose.size());
-  for (const eval::PoseError& pose : run.evaluation->per_pose) {
-    const double t_s = seconds_between(input.gt.poses.front().t, pose.t) + offset_s;
-    points.push_back({t_s, {t_s, pose.*error}});
-  }
-  return points;
-}
-
-bool has_rotation_errors(const FigureInput& input) {
-  return std::ranges::any_of(input.runs,
-                             [](const PlottedRun& run) { return run.evaluation->ate_deg.has_value(); });
-}
-
-void require_rotations(const FigureInput& input, const char* kind) {
-  if (has_rotation_errors(input)) return;
-  throw InputError(std::string("--figure ") + kind,
-                   "the orientations of no estimate can be compared with those of the ground truth");
-}
-
-/// Curves of the truth (first) and of the estimates in one panel.
-using Curves = std::vector<Curve>;
-
-ValueRange y_range(const Curves& curves) {
-  ValueRange range;
-  for (const Curve& curve : curves) {
-    for (const std::vector<CurvePoint>& line : curve) {
-      for (const CurvePoint& point : line) range.add(point.at.y);
-    }
-  }
-  return range;
-}
-
-ValueRange from_zero(const ValueRange& range) {
-  return {0.0, range.empty() || range.high <= 0.0 ? 1.0 : 1.05 * range.high};
-}
-
-/// From the first pose of the truth; estimates may begin earlier and end later.
-ValueRange duration(const FigureInput& input) {
-  const Timestamp start = input.gt.poses.front().t;
-  ValueRange range{0.0, std::max(seconds_between(start, input.gt.poses.back().t), 1e-3)};
-  for (const PlottedRun& run : input.runs) {
-    if (run.est->poses.empty()) continue;
-    range.add(seconds_between(start, run.est->poses.front().t) + input.offset_s);
-    range.add(seconds_between(start, run.est->poses.back().t) + input.offset_s);
-  }
-  return range;
-}
-
-/// Rows of the estimates first, the truth last: above them.
-std::function<void(Drawing&, const PlotArea&)> drawing_of(Curves curves, std::vector<LegendRow> rows) {
-  return [curves = std::move(curves), rows = std::move(rows)](Drawing& drawing, const PlotArea& area) {
-    for (std::size_t i = 1; i < curves.size(); ++i) draw_curve(drawing, area, curves[i], rows[i]);
-    draw_curve(drawing, area, curves.front(), rows.front());
-  };
-}
-
-/// Panels below each other with the same x axis.
-Chart stacked_chart(const FigureInput& input, ErrorStatistics error, const char* unit) {
-  Chart chart{.title = {}, .panels = {}};
-  chart.legend = legend_rows(input, error);
-  chart.legend_heads = {std::string("RMSE [") + unit + "]", "median", "max", "n"};
-  return chart;
-}
-
-void share_x(Chart& chart) {
-  for (std::size_t i = 0; i + 1 < chart.panels.size(); ++i) chart.panels[i].shares_x_below = true;
-}
 
 /// A value of each pose over time, of truth and estimates.
 Curves pose_curves(const FigureInput& input, const std::function<double(const Pose&)>& value,
@@ -154,78 +74,6 @@ Chart rotation_chart(const FigureInput& input, const FigureSize& size) {
     chart.panels.push_back(std::move(panel));
   }
   share_x(chart);
-  return chart;
-}
-
-/// Path length of the ground truth up to a time [s since its first pose], linear between its poses.
-class TraveledDistance {
- public:
-  explicit TraveledDistance(const Trajectory& gt) {
-    for (const StampedPose& pose : gt.poses) {
-      if (!meters_.empty()) meters_.push_back(meters_.back() + (pose.T_w_f.p - previous_).norm());
-      if (meters_.empty()) meters_.push_back(0.0);
-      times_s_.push_back(seconds_between(gt.poses.front().t, pose.t));
-      previous_ = pose.T_w_f.p;
-    }
-  }
-
-  [[nodiscard]] double total_m() const { return meters_.back(); }
-  [[nodiscard]] double at(double t_s) const {
-    const auto later = std::ranges::upper_bound(times_s_, t_s);
-    if (later == times_s_.begin()) return 0.0;
-    if (later == times_s_.end()) return meters_.back();
-    const auto i = static_cast<std::size_t>(later - times_s_.begin());
-    const double weight = (t_s - times_s_[i - 1]) / (times_s_[i] - times_s_[i - 1]);
-    return meters_[i - 1] + weight * (meters_[i] - meters_[i - 1]);
-  }
-
- private:
-  std::vector<double> times_s_;
-  std::vector<double> meters_;
-  Eigen::Vector3d previous_ = Eigen::Vector3d::Zero();
-};
-
-/// Curves of the estimates; that of the truth is empty.
-Curves error_curves(const FigureInput& input, double eval::PoseError::*error) {
-  Curves curves{{}};
-  for (const PlottedRun& run : input.runs) curves.push_back(split_at_gaps(errors_of(input, run, error)));
-  return curves;
-}
-
-/// The legend without the ground truth, which has no error.
-void drop_truth(Chart& chart) { chart.legend.erase(chart.legend.begin()); }
-
-Chart error_chart(const FigureInput& input, const FigureSize& size) {
-  Chart chart = stacked_chart(input, &eval::Evaluation::ate_m, "m");
-  const auto add = [&](ChartAxis x, const char* title, Curves curves) {
-    ChartPanel panel{
-        .x = std::move(x), .y = {from_zero(y_range(curves)), title}, .height = panel_height(size)};
-    const Curve single = input.runs.size() == 1 ? curves.back() : Curve{};
-    panel.draw = drawing_of(std::move(curves), chart.legend);
-    add_statistics(panel, single);
-    chart.panels.push_back(std::move(panel));
-  };
-  Curves positions = error_curves(input, &eval::PoseError::translation_m);
-  Curves by_distance = positions;
-  add({duration(input), "time [s]"}, "position error [m]", std::move(positions));
-  if (has_rotation_errors(input)) {
-    add({duration(input), "time [s]"}, "rotation error [deg]",
-        error_curves(input, &eval::PoseError::rotation_deg));
-  }
-  share_x(chart);
-  const TraveledDistance distance(input.gt);
-  for (Curve& curve : by_distance) {
-    for (std::vector<CurvePoint>& line : curve) {
-      for (CurvePoint& point : line) point.at.x = distance.at(point.t_s);
-    }
-  }
-  add({{0.0, std::max(distance.total_m(), 1e-3)}, "distance traveled [m]"}, "position error [m]",
-      std::move(by_distance));
-  drop_truth(chart);
-  if (input.runs.size() == 1) {
-    chart.legend.push_back({.style = theme::kMean, .name = "mean ± std", .numbers = {}});
-    chart.legend.push_back({.style = theme::kMedian, .name = "median", .numbers = {}});
-  }
   return chart;
 }
 
@@ -385,6 +233,7 @@ Chart box_chart(const FigureInput& input, const FigureSize& size) {
   add(&eval::PoseError::translation_m, "position error [m]");
   if (has_rotation_errors(input)) add(&eval::PoseError::rotation_deg, "rotation error [deg]");
   drop_truth(chart);
+  fill_samples(chart);
   chart.note = kViolinNote;
   return chart;
 }
@@ -463,6 +312,7 @@ Chart rpe_chart(const FigureInput& input, const FigureSize& size) {
     chart.panels.push_back(box_panel(std::move(boxes[1]), lengths, "relative error [deg]", height));
   share_x(chart);
   drop_truth(chart);
+  fill_samples(chart);
   chart.note = kBoxNote;
   return chart;
 }
@@ -529,6 +379,10 @@ Chart chart_of(FigureKind kind, const FigureInput& input, const FigureSize& size
       return rotation_chart(input, size);
     case FigureKind::kError:
       return error_chart(input, size);
+    case FigureKind::kRelative:
+      return relative_chart(input, size);
+    case FigureKind::kTransform:
+      return transform_chart(input, size);
     case FigureKind::kRpe:
       return rpe_chart(input, size);
     case FigureKind::kBox:
@@ -547,18 +401,15 @@ Chart chart_of(FigureKind kind, const FigureInput& input, const FigureSize& size
 
 }  // namespace
 
-std::vector<CurvePoint> error_points(const FigureInput& input, const PlottedRun& run) {
-  return errors_of(input, run, &eval::PoseError::translation_m);
-}
-
-std::vector<LegendRow> legend_rows(const FigureInput& input, ErrorStatistics error) {
+std::vector<LegendRow> legend_rows(const FigureInput& input,
+                                   std::span<const std::optional<eval::Statistics>> errors) {
   std::vector<LegendRow> rows{
       {.style = theme::kTruth, .width = theme::kTruthWidth, .name = "ground truth", .numbers = {}}};
   for (std::size_t i = 0; i < input.runs.size(); ++i) {
     LegendRow row{
         .style = theme::kEstimates[i % theme::kEstimates.size()], .name = input.runs[i].name, .numbers = {}};
-    if (error != nullptr) {
-      const std::optional<eval::Statistics>& found = input.runs[i].evaluation->*error;
+    if (i < errors.size()) {
+      const std::optional<eval::Statistics>& found = errors[i];
       row.numbers = found ? std::vector<std::string>{short_number(found->rmse), short_number(found->median),
                                                      short_number(found->max), std::to_string(found->count)}
                           : std::vector<std::string>(4, "n/a");
@@ -566,6 +417,14 @@ std::vector<LegendRow> legend_rows(const FigureInput& input, ErrorStatistics err
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+std::vector<LegendRow> legend_rows(const FigureInput& input, ErrorStatistics error) {
+  std::vector<std::optional<eval::Statistics>> errors;
+  for (const PlottedRun& run : input.runs) {
+    if (error != nullptr) errors.push_back(run.evaluation->*error);
+  }
+  return legend_rows(input, errors);
 }
 
 Drawing figure(FigureKind kind, const FigureInput& input, const FigureSize& size) {

@@ -9,8 +9,9 @@
 
 #include "core/base/error.h"
 #include "eval/io/nmea_file.h"
+#include "eval/metrics/statistics.h"
 #include "reports/drawing/curves.h"
-#include "reports/drawing/figures.h"
+#include "reports/drawing/evaluation/figures.h"
 
 namespace stillpoint::report {
 namespace {
@@ -95,6 +96,37 @@ Curve curve_of(const std::vector<TimedPose>& poses, const Projection& P) {
   return split_at_gaps(points);
 }
 
+/// What the path of a single estimate is colored by, with its times; finite.
+std::vector<CurvePoint> coloring_errors(const FigureInput& input) {
+  const PlottedRun& run = input.runs.front();
+  std::vector<CurvePoint> errors;
+  if (input.path.color == PathColor::kRelative) {
+    errors = relative_series(input, run).position_m;
+  } else {
+    errors = error_points(input, run,
+                          input.path.color == PathColor::kRotation ? &eval::PoseError::rotation_deg
+                                                                   : &eval::PoseError::translation_m);
+  }
+  std::erase_if(errors, [](const CurvePoint& error) { return !std::isfinite(error.at.y); });
+  if (errors.empty() && input.path.color != PathColor::kPosition)
+    throw InputError("--path-color", "the estimate has no such errors; choose position");
+  return errors;
+}
+
+std::string unit_of(PathColor color) { return color == PathColor::kRotation ? "[deg]" : "[m]"; }
+
+std::string coloring_title(const FigureInput& input) {
+  switch (input.path.color) {
+    case PathColor::kPosition:
+      return "position error [m]";
+    case PathColor::kRotation:
+      return "rotation error [deg]";
+    case PathColor::kRelative:
+      break;
+  }
+  return "relative position error [m] " + rpe_interval_text(input);
+}
+
 /// The positions of a run that have an error, and these errors, split at gaps.
 struct ColoredPath {
   Curve lines;  ///< y and x of the view
@@ -107,7 +139,7 @@ ColoredPath colored_path(const FigureInput& input, const std::vector<TimedPose>&
   std::vector<CurvePoint> points;
   std::vector<double> errors;
   auto pose = poses.begin();
-  for (const CurvePoint& error : error_points(input, input.runs.front())) {
+  for (const CurvePoint& error : coloring_errors(input)) {
     while (pose != poses.end() && pose->t_s < error.t_s - kSameTime_s) ++pose;
     if (pose == poses.end()) break;
     points.push_back({error.t_s, projected(P, pose->pose.p)});
@@ -148,15 +180,17 @@ ColoredPoints visible_points(const PlotArea& area, const std::vector<CurvePoint>
   return points;
 }
 
-/// Limits of the colors: as requested, else 0 and the largest error.
+/// Limits of the colors: as requested, else 0 and a percentile of the errors.
 ColorBar color_bar_of(const FigureInput& input) {
-  const auto& error = input.runs.front().evaluation->ate_m;
-  const ColorBar bar{.least = input.path.least_error_m,
-                     .most = input.path.most_error_m.value_or(error ? error->max : 0.0),
-                     .title = "position error [m]"};
+  std::vector<double> errors;
+  for (const CurvePoint& error : coloring_errors(input)) errors.push_back(error.at.y);
+  const double most = eval::percentile(errors, 0.01 * input.path.most_percentile).value_or(0.0);
+  const ColorBar bar{.least = input.path.least_error,
+                     .most = input.path.most_error.value_or(most),
+                     .title = coloring_title(input)};
   if (bar.least > 0.0 && bar.most <= bar.least) {
-    throw InputError("--colormap-min", fmt::format("{:g} m is not below the upper limit of {:g} m; lower it",
-                                                   bar.least, bar.most));
+    throw InputError("--colormap-min",
+                     fmt::format("{:g} is not below the upper limit of {:g}; lower it", bar.least, bar.most));
   }
   return bar;
 }
@@ -181,13 +215,15 @@ void draw_colored(Drawing& drawing, const ColoredPoints& points, const ColorBar&
   if (part.points.size() > 1) drawing.marks.push_back(part);
 }
 
-/// A single estimate has the middle of the colors of its error.
+/// A single estimate has the middle of the colors of its error, and the numbers of that error.
 std::vector<LegendRow> path_legend(const FigureInput& input) {
-  std::vector<LegendRow> rows = legend_rows(input, &eval::Evaluation::ate_m);
-  if (input.runs.size() == 1) {
-    rows[1].style = {error_color(0.5, 1.0)};
-    rows[1].width = theme::kColoredWidth;
-  }
+  if (input.runs.size() != 1) return legend_rows(input, &eval::Evaluation::ate_m);
+  const std::vector<std::optional<eval::Statistics>> found{statistics_of(coloring_errors(input))};
+  std::vector<LegendRow> rows = input.path.color == PathColor::kPosition
+                                    ? legend_rows(input, &eval::Evaluation::ate_m)
+                                    : legend_rows(input, found);
+  rows[1].style = {error_color(0.5, 1.0)};
+  rows[1].width = theme::kColoredWidth;
   return rows;
 }
 
@@ -279,7 +315,7 @@ void draw_correspondences(Drawing& drawing, const PlotArea& area, const FigureIn
     auto pose = view.estimates[r].begin();
     auto truth = view.truth.begin();
     Point2 last{-1e9, -1e9};
-    for (const CurvePoint& error : error_points(input, input.runs[r])) {
+    for (const CurvePoint& error : error_points(input, input.runs[r], &eval::PoseError::translation_m)) {
       while (pose != view.estimates[r].end() && pose->t_s < error.t_s - kSameTime_s) ++pose;
       while (truth != view.truth.end() && truth->t_s < error.t_s - kSameTime_s) ++truth;
       if (pose == view.estimates[r].end() || truth == view.truth.end()) break;
@@ -329,10 +365,45 @@ void draw_paths(Drawing& drawing, const PlotArea& area, const FigureInput& input
   add(end_mark(place(view.truth.back()), theme::kBlack));
 }
 
+/// The part of the grid in the plot area, at 300 pixels per inch. Black becomes a gray on which lines are
+/// seen.
+/// @param right axis to the right: 0 (x) or 1 (y)
+void draw_grid(Drawing& drawing, const PlotArea& area, const datasets::OccupancyGrid& grid, int right) {
+  const auto pixels_of = [](double length) {
+    return static_cast<int>(std::clamp(std::ceil(length * theme::kPixelsPerInch / 72.0), 1.0, 4000.0));
+  };
+  const int columns = pixels_of(area.bottom_right.x - area.top_left.x);
+  const int rows = pixels_of(area.bottom_right.y - area.top_left.y);
+  const double pixel_m = area.x.length() / columns;
+  const int samples = static_cast<int>(std::clamp(std::ceil(pixel_m / grid.resolution_m), 1.0, 4.0));
+  Raster raster{area.top_left, area.bottom_right, static_cast<std::size_t>(columns), {}};
+  bool has_cells = false;
+  for (int k = 0; k < rows * columns; ++k) {
+    int sum = 0;
+    for (int s = 0; s < samples * samples; ++s) {
+      const double to_right = (k % columns + (s % samples + 0.5) / samples) / columns;
+      const double down = (k / columns + (s / samples + 0.5) / samples) / rows;
+      const double along = area.x.low + to_right * area.x.length();
+      const double up = area.y.high - down * area.y.length();
+      const std::optional<std::uint8_t> cell = right == 0 ? grid.at(along, up) : grid.at(up, along);
+      has_cells |= cell.has_value();
+      sum += cell.value_or(255);
+    }
+    raster.pixels.push_back(static_cast<unsigned char>(255 - (255 - sum / (samples * samples)) / 2));
+  }
+  if (!has_cells) {
+    throw InputError("--occupancy-grid",
+                     "no cell of the map is near the paths; it must be in the world of the ground truth");
+  }
+  drawing.marks.push_back(std::move(raster));
+}
+
 ChartPanel path_panel(const FigureInput& input, const PathView& view, int right, int up) {
   return {.x = {extent(view, right), axis_title(view, right)},
           .y = {extent(view, up), axis_title(view, up)},
-          .draw = [&input, P = plane_of(right, up)](Drawing& drawing, const PlotArea& area) {
+          .draw = [&input, right, up, P = plane_of(right, up)](Drawing& drawing, const PlotArea& area) {
+            if (input.path.grid != nullptr && right + up == 1)
+              draw_grid(drawing, area, *input.path.grid, right);
             draw_paths(drawing, area, input, P);
           }};
 }
@@ -346,7 +417,8 @@ void add_scale_bar(ChartPanel& panel, double font) {
 
 /// Plan and side view in which the ground truth is longest.
 std::vector<ChartPanel> plan_and_side(const FigureInput& input, const PathView& view, double font) {
-  const std::array<int, 3> axes = longest_axes(view);
+  const std::array<int, 3> axes =
+      input.path.grid == nullptr ? longest_axes(view) : std::array{0, 1, 2};  // of the map
   ChartPanel plan = path_panel(input, view, axes[0], axes[1]);
   ChartPanel side = path_panel(input, view, axes[0], axes[2]);
   // A path that is higher than wide is in a square, so that both views have the same scale.
@@ -471,7 +543,8 @@ Chart path_chart(const FigureInput& input, const FigureSize& size) {
   const PathView view = view_of(input);
   Chart chart{.title = "Trajectories", .panels = {}};
   chart.legend = path_legend(input);
-  chart.legend_heads = {"RMSE [m]", "median", "max", "n"};
+  chart.legend_heads = {"RMSE " + (input.runs.size() == 1 ? unit_of(input.path.color) : "[m]"), "median",
+                        "max", "n"};
   chart.start_and_end = true;
   if (!input.path.mode) {
     chart.panels = plan_and_side(input, view, size.font_size_pt);

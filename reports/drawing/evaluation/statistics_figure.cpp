@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "eval/metrics/statistics.h"
-#include "reports/drawing/figures.h"
+#include "reports/drawing/evaluation/figure_parts.h"
 
 namespace stillpoint::report {
 namespace {
@@ -16,17 +16,17 @@ namespace {
 constexpr double kStatisticsPanelRatio = 0.36;  // height per width of the figure
 
 /// Finite errors of each run in one panel.
-struct ErrorsOfRuns {
+struct PanelErrors {
   std::vector<std::vector<double>> runs;
   std::string title;
   double most = 0.0;
 };
 
 /// Position errors, and rotation errors if there are any.
-std::vector<ErrorsOfRuns> errors_of_runs(const FigureInput& input) {
-  std::vector<ErrorsOfRuns> panels;
+std::vector<PanelErrors> errors_of_runs(const FigureInput& input) {
+  std::vector<PanelErrors> panels;
   const auto add = [&](double eval::PoseError::*error, const char* title) {
-    ErrorsOfRuns panel{.runs = {}, .title = title};
+    PanelErrors panel{.runs = {}, .title = title};
     for (const PlottedRun& run : input.runs) {
       std::vector<double>& values = panel.runs.emplace_back();
       for (const eval::PoseError& pose : run.evaluation->per_pose) {
@@ -76,7 +76,7 @@ constexpr std::array<StatisticValue, 6> kBars{{{"RMSE", &eval::Statistics::rmse}
                                                {"max", &eval::Statistics::max}}};
 
 /// A group of bars for each statistic, a bar for each run.
-ChartPanel bars_panel(const ErrorsOfRuns& errors, const std::vector<LegendRow>& rows, double height) {
+ChartPanel bars_panel(const PanelErrors& errors, const std::vector<LegendRow>& rows, double height) {
   ChartPanel panel{.x = {{-0.6, kBars.size() - 0.4}, ""},
                    .y = {{0.0, errors.most > 0.0 ? 1.05 * errors.most : 1.0}, errors.title},
                    .height = height};
@@ -128,7 +128,7 @@ void add_statistics(ChartPanel& panel, const Curve& curve) {
 Chart histogram_chart(const FigureInput& input, const FigureSize& size) {
   constexpr std::size_t kMostBins = 25;
   Chart chart = statistics_chart(input);
-  for (const ErrorsOfRuns& errors : errors_of_runs(input)) {
+  for (const PanelErrors& errors : errors_of_runs(input)) {
     const double width = errors.most > 0.0 ? nice_ticks({0.0, errors.most}, kMostBins).step : 1.0;
     const auto bins = static_cast<std::size_t>(std::floor(errors.most / width)) + 1;
     std::vector<Curve> outlines;
@@ -151,7 +151,8 @@ Chart histogram_chart(const FigureInput& input, const FigureSize& size) {
 
 Chart bars_chart(const FigureInput& input, const FigureSize& size) {
   Chart chart = statistics_chart(input);
-  for (const ErrorsOfRuns& errors : errors_of_runs(input))
+  fill_samples(chart);
+  for (const PanelErrors& errors : errors_of_runs(input))
     chart.panels.push_back(bars_panel(errors, chart.legend, height_of(size)));
   return chart;
 }
