@@ -308,7 +308,8 @@ class Diagnoser {
 
 void rank_others(std::vector<Cause>& causes, double effective) {
   std::ranges::stable_sort(causes, {}, [effective](const Cause& cause) {
-    if (cause.basis == CauseBasis::kShown) return std::tuple(false, cause.basis, 0.0);
+    if (cause.basis == CauseBasis::kShown || cause.strength >= kFundamental)
+      return std::tuple(false, CauseBasis::kShown, 0.0);
     const double ratio = cause.error_ratio.value_or(1.0);
     return std::tuple(ratio * effective > 1.0, cause.basis, ratio);
   });

@@ -51,9 +51,9 @@ struct Diagnosis {
   std::vector<Cause> others;  ///< with a smaller effect, or one that was not measured: most likely first
 };
 
-/// Orders causes without an effect that counts: those that the data itself shows, as they are; those by
-/// comparison of sensors; those inferred from a run; among the last two by the error with their correction,
-/// and last those whose correction increases it by more than chance.
+/// Orders causes without an effect that counts: those that the data itself shows and wrong axes, as they are;
+/// those by comparison of sensors; those inferred from a run; among the last two by the error with their
+/// correction, and last those whose correction increases it by more than chance.
 /// @param effective ratio of errors that counts, see `Diagnosis::least_effect`
 void rank_others(std::vector<Cause>& causes, double effective);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/diagnose/diagnosis_text.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
@@ -56,17 +57,22 @@ nlohmann::ordered_json list(const std::vector<Cause>& causes) {
 /// Of a run of another system, with evidence and remedy: the effects are measured with this odometry.
 std::string others_text(const Diagnosis& diagnosis) {
   if (diagnosis.others.empty()) return "";
-  if (!diagnosis.foreign) return "found, with less effect: " + names(diagnosis.others) + "\n";
+  if (!diagnosis.foreign || !has_unmeasured(diagnosis))
+    return "found, with less effect: " + names(diagnosis.others) + "\n";
   std::string text = "found; the effect needs a run of this odometry (leave RUN out):\n";
   std::size_t number = 0;
   for (const Cause& cause : diagnosis.others) {
-    if (++number > kMaxCauses) break;
+    if (cause.error_ratio || ++number > kMaxCauses) continue;
     text += fmt::format("- {}: {}\n  remedy: {}\n", cause.name, cause.evidence, cause.remedy);
   }
   return text;
 }
 
 }  // namespace
+
+bool has_unmeasured(const Diagnosis& diagnosis) {
+  return std::ranges::any_of(diagnosis.others, [](const Cause& cause) { return !cause.error_ratio; });
+}
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   std::string text = title(diagnosis);
@@ -78,7 +84,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
                         cause.correction ? "without it" : "outside of the frames concerned", cause.evidence,
                         cause.remedy);
   }
-  if (diagnosis.causes.empty() && !(diagnosis.foreign && !diagnosis.others.empty()))
+  if (diagnosis.causes.empty() && !(diagnosis.foreign && has_unmeasured(diagnosis)))
     text += fmt::format("nothing found that changes the error by more than {:.0f} %\n",
                         100.0 * diagnosis.least_effect);
   text += others_text(diagnosis);

@@ -8,6 +8,10 @@
 
 namespace stillpoint::bench {
 
+/// Whether the effect of a cause is unknown.
+[[nodiscard]] bool has_unmeasured(const Diagnosis& diagnosis);
+
+/// Ends with a line break.
 [[nodiscard]] std::string diagnosis_text(const Diagnosis& diagnosis);
 
 /// The same and all candidates, with full precision.

@@ -76,6 +76,11 @@ std::vector<Cause> content_causes(const RecordingSurvey& survey) {
     return frames[i].deviation_gray < kUniformGray &&
            frames[i].deviation_gray <= kUniformRatio * frames[i].mean_gray;
   };
+  const auto is_clipped_or_dark = [&](std::size_t i) {
+    const FrameStatistics& frame = frames[i];
+    return !is_uniform(i) && (frame.mean_gray < kDarkened * gray || frame.dark_ratio > kMostClipped ||
+                              frame.bright_ratio > kMostClipped);
+  };
   FrameCauses causes(survey);
   causes.add({.id = "blank",
               .name = "blank images",
@@ -91,12 +96,7 @@ std::vector<Cause> content_causes(const RecordingSurvey& survey) {
               .name = "images too dark or too bright",
               .evidence = "are clipped or have half of the usual brightness",
               .remedy = "fix exposure and gain of the camera, or light the scene"},
-             [&](std::size_t i) {
-               const FrameStatistics& frame = frames[i];
-               return !is_uniform(i) &&
-                      (frame.mean_gray < kDarkened * gray || frame.dark_ratio > kMostClipped ||
-                       frame.bright_ratio > kMostClipped);
-             });
+             is_clipped_or_dark);
   causes.add({.id = "exposure_steps",
               .name = "exposure changes",
               .evidence = "differ in brightness by more than 12 % from the one before",
@@ -109,7 +109,9 @@ std::vector<Cause> content_causes(const RecordingSurvey& survey) {
               .name = "blurred images",
               .evidence = "are blurred",
               .remedy = "shorten the exposure, add light, or move more slowly"},
-             [&](std::size_t i) { return !is_uniform(i) && frames[i].sharpness < kBlurred * sharpness; });
+             [&](std::size_t i) {
+               return !is_uniform(i) && !is_clipped_or_dark(i) && frames[i].sharpness < kBlurred * sharpness;
+             });
   std::vector<Cause> found = causes.take();
   // Frames of a wrong exposure between its steps are the consequence of these.
   const auto steps = std::ranges::find(found, "exposure_steps", &Cause::id);

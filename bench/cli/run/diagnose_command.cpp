@@ -165,7 +165,7 @@ int diagnose_sequence(const DiagnoseArguments& arguments) {
   const Diagnosis diagnosis = diagnose(*stream, options_of(arguments, stream->info(), start));
   std::cout << (arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));
   if (diagnosis.interrupted) return kExitInterrupted;
-  const bool is_found = !diagnosis.causes.empty() || (diagnosis.foreign && !diagnosis.others.empty());
+  const bool is_found = !diagnosis.causes.empty() || (diagnosis.foreign && has_unmeasured(diagnosis));
   return is_found ? kExitFindings : kExitOk;
 }
 

@@ -195,14 +195,15 @@ TEST(OtherCauses, BeginWithWhatTheDataShows) {
   for (std::size_t i = 20; i < 25; ++i) rig.survey.frames[i].deviation_gray = 0.0;
   std::vector<Cause> causes = {{.id = "imu_noise", .basis = CauseBasis::kInferred, .error_ratio = 0.8},
                                {.id = "depth_late"},
+                               {.id = "gyro_axes", .strength = kFundamental, .error_ratio = 1.7},
                                {.id = "clock_drift", .error_ratio = 3.0},
                                {.id = "truth_late", .error_ratio = 0.99}};
   for (Cause& blank : image_causes(rig.info, rig.survey)) causes.push_back(std::move(blank));
   rank_others(causes, 0.5);
   std::vector<std::string> order;
   for (const Cause& cause : causes) order.push_back(cause.id);
-  EXPECT_EQ(order,
-            (std::vector<std::string>{"blank", "truth_late", "depth_late", "imu_noise", "clock_drift"}));
+  EXPECT_EQ(order, (std::vector<std::string>{"gyro_axes", "blank", "truth_late", "depth_late", "imu_noise",
+                                             "clock_drift"}));
 }
 
 TEST(ImageCauses, TellDarkImagesFromBlankOnes) {
@@ -210,10 +211,12 @@ TEST(ImageCauses, TellDarkImagesFromBlankOnes) {
   for (std::size_t i = 20; i < 25; ++i) {  // to 5 % of the brightness
     rig.survey.frames[i].mean_gray = 5.0;
     rig.survey.frames[i].deviation_gray = 2.0;
+    rig.survey.frames[i].sharpness = 0.1;  // rounded to few gray levels
   }
   const std::vector<Cause> causes = image_causes(rig.info, rig.survey);
   EXPECT_TRUE(cause_named(causes, "exposure"));
   EXPECT_FALSE(cause_named(causes, "blank"));
+  EXPECT_FALSE(cause_named(causes, "blur"));
 }
 
 TEST(ImageCauses, AreAbsentForSoundImages) {
