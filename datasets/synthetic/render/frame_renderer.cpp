@@ -33,6 +33,12 @@ float approximate_log2(float x) {
   return exponent + static_cast<float>(bits & 0x7fffffU) * 0x1.0p-23F;
 }
 
+/// Ray time of a light sample.
+float sample_time(const Exposure& exposure, std::size_t pose_row, std::size_t sample) {
+  const auto offset = static_cast<float>(kSampleTimes[sample]);
+  return std::clamp(exposure.mid_times[pose_row] + offset * exposure.exposure_fraction_of_span, 0.0F, 1.0F);
+}
+
 struct View {
   Eigen::Matrix3f R_w_c;
   Eigen::Vector3f p_w;
@@ -84,8 +90,34 @@ struct FrameRenderer::Job {
   const RayTracer::Movers* movers;
   std::vector<std::array<View, kLightSamples>> views;  // per row
   std::vector<float> vertex_light;
-  std::optional<MoverTiles> tiles;
+  std::vector<MoverTiles> tiles;  // one, or one per light sample
+  [[nodiscard]] bool may_show_movers(const Block& block, std::size_t sample) const {
+    return movers != nullptr && tiles[std::min(sample, tiles.size() - 1)].is_marked(block.row, block.column);
+  }
 };
+
+namespace {
+
+/// Where each light sample may show movers; with a rolling shutter, where any may.
+std::vector<MoverTiles> mover_tiles(const Exposure& exposure, const MovingMesh& mesh, const Camera& camera) {
+  if (exposure.poses.size() > 1) {
+    const Pose &first = exposure.poses.front().front(), &last = exposure.poses.back().back();
+    const std::array<Instant, 4> between{{{first, 0.0F}, {first, 1.0F}, {last, 0.0F}, {last, 1.0F}}};
+    return {MoverTiles(mesh, camera, between)};
+  }
+  std::vector<MoverTiles> tiles;
+  for (std::size_t i = 0; i < kLightSamples; ++i) {
+    if (i > 0 && kSampleTimes[i] == kSampleTimes[i - 1]) {
+      tiles.push_back(tiles.back());
+    } else {
+      tiles.emplace_back(mesh, camera,
+                         std::array{Instant{exposure.poses.front()[i], sample_time(exposure, 0, i)}});
+    }
+  }
+  return tiles;
+}
+
+}  // namespace
 
 double sample_time_offset(int index) { return kSampleTimes[static_cast<std::size_t>(index)]; }
 
@@ -112,8 +144,7 @@ RenderedFrame FrameRenderer::render(const Exposure& exposure, const MoverFrame* 
   if (movers != nullptr && !movers->mesh.triangles.empty()) {
     mover_scene.emplace(tracer_, movers->mesh);
     job.movers = &*mover_scene;
-    job.tiles.emplace(movers->mesh, camera_,
-                      std::array{exposure.poses.front().front(), exposure.poses.back().back()});
+    job.tiles = mover_tiles(exposure, movers->mesh, camera_);
     for (std::size_t i = 0; i < movers->mesh.start.size(); ++i) {
       job.vertex_light.push_back(unshadowed_light(world_, movers->mesh.start[i], movers->normals[i]));
     }
@@ -144,13 +175,10 @@ RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) con
     const Eigen::Vector2f& point =
         table[static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column)];
     const Eigen::Vector3f direction = view.R_w_c * Eigen::Vector3f(point.x(), point.y(), 1.0F);
-    const auto time_offset = static_cast<float>(sample_time_offset(sample));
     packet.origin_x[lane] = view.p_w.x(), packet.direction_x[lane] = direction.x();
     packet.origin_y[lane] = view.p_w.y(), packet.direction_y[lane] = direction.y();
     packet.origin_z[lane] = view.p_w.z(), packet.direction_z[lane] = direction.z();
-    packet.time[lane] =
-        std::clamp(job.exposure->mid_times[pose_row] + time_offset * job.exposure->exposure_fraction_of_span,
-                   0.0F, 1.0F);
+    packet.time[lane] = sample_time(*job.exposure, pose_row, static_cast<std::size_t>(sample));
     packet.far[lane] = inside ? kFar_m : -1.0F;
     packet.primitive[lane] = -1;
     packet.moving[lane] = false;
@@ -205,14 +233,13 @@ inline FrameRenderer::SurfacePoint FrameRenderer::surface_at(const Job& job, con
 void FrameRenderer::render_block(const Job& job, int block_row, int block_column,
                                  RenderedFrame& frame) const {
   const Block block{block_row, block_column};
-  const bool may_move = job.movers != nullptr && job.tiles->is_marked(block_row, block_column);
   // All texels are requested from memory before the first one is used.
   std::array<std::array<SurfacePoint, kPacket>, kLightSamples> points;
   std::array<std::uint32_t, kLightSamples> hits{};
   for (int sample = 0; sample < kLightSamples; ++sample) {
     RayPacket packet = aim(job, block, sample);
     tracer_.trace(packet);
-    if (may_move) job.movers->trace(packet);
+    if (job.may_show_movers(block, static_cast<std::size_t>(sample))) job.movers->trace(packet);
     const auto at = static_cast<std::size_t>(sample);
     for (int lane = 0; lane < kPacket; ++lane) {
       if (packet.primitive[lane] < 0) continue;

@@ -133,12 +133,13 @@ TEST(FrameRenderer, MovingObjectsOccludeTheWorldAndAreLabeled) {
 TEST(MoverTiles, MarksOnlyTilesNearTheMovingObject) {
   const Pose T_w_c{camera_attitude(0.0, 0.0, 0.0), Vector3d::Zero()};
   const MoverFrame ball = moving_ball(0.5);
-  const MoverTiles tiles(ball.mesh, small_camera(), std::span(&T_w_c, 1));
+  const MoverTiles tiles(ball.mesh, small_camera(), std::array{Instant{T_w_c, 0.5F}});
   EXPECT_TRUE(tiles.is_marked(59, 44));  // 79.5 - 0.5 / 2 * 140 = 44.5
   EXPECT_FALSE(tiles.is_marked(59, 140));
+  EXPECT_FALSE(tiles.is_marked(59, 44 + 14 + 6));  // the half-width is 0.2 / 2 m * 140 px = 14 px
   const MoverFrame behind = moving_ball(0.0);
   const Pose turned{camera_attitude(3.14159, 0.0, 0.0), Vector3d::Zero()};
-  EXPECT_FALSE(MoverTiles(behind.mesh, small_camera(), std::span(&turned, 1)).is_marked(59, 80));
+  EXPECT_FALSE(MoverTiles(behind.mesh, small_camera(), std::array{Instant{turned, 0.5F}}).is_marked(59, 80));
 }
 
 }  // namespace
