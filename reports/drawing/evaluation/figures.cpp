@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "eval/metrics/rpe.h"
+#include "eval/trajectory/orientations.h"
 #include "reports/drawing/evaluation/figure_parts.h"
 
 namespace stillpoint::report {
@@ -29,9 +30,7 @@ Curves pose_curves(const FigureInput& input, const std::function<double(const Po
     return split_at_gaps(points, most_jump);
   };
   Curves curves{curve_of(timed_poses(input.gt, {}, start))};
-  for (const PlottedRun& run : input.runs) {
-    curves.push_back(curve_of(timed_poses(*run.est, run.evaluation->alignment.S_w_v, start, input.offset_s)));
-  }
+  for (const PlottedRun& run : input.runs) curves.push_back(curve_of(aligned_poses(input, run)));
   return curves;
 }
 
@@ -353,8 +352,7 @@ Chart speed_chart(const FigureInput& input, const FigureSize& size) {
     angular.push_back(std::move(curves.angular));
   };
   add(timed_poses(input.gt, {}, start));
-  for (const PlottedRun& run : input.runs)
-    add(timed_poses(*run.est, run.evaluation->alignment.S_w_v, start, input.offset_s));
+  for (const PlottedRun& run : input.runs) add(aligned_poses(input, run));
   const auto add_panel = [&](Curves curves, const char* title) {
     ChartPanel panel{.x = {duration(input), "time [s]"},
                      .y = {from_zero(y_range(curves)), title},
@@ -400,6 +398,18 @@ Chart chart_of(FigureKind kind, const FigureInput& input, const FigureSize& size
 }
 
 }  // namespace
+
+std::vector<TimedPose> aligned_poses(const FigureInput& input, const PlottedRun& run) {
+  const eval::Similarity& S_w_v = run.evaluation->alignment.S_w_v;
+  std::vector<TimedPose> poses = timed_poses(*run.est, S_w_v, input.gt.poses.front().t, input.offset_s);
+  if (run.evaluation->rotation_source == eval::RotationSource::kPositions) return poses;
+  const eval::PoseMatches matches(
+      input.gt, *run.est, eval::associate_interpolated(input.gt, *run.est, input.max_gap_s, input.offset_s));
+  const eval::Similarity completed = eval::complete_rotation(matches, S_w_v).S_w_v;
+  const Eigen::Quaterniond R = completed.T_w_v.q * S_w_v.T_w_v.q.conjugate();
+  for (TimedPose& timed : poses) timed.pose.q = R * timed.pose.q;
+  return poses;
+}
 
 std::vector<LegendRow> legend_rows(const FigureInput& input,
                                    std::span<const std::optional<eval::Statistics>> errors) {

@@ -105,6 +105,11 @@ struct FigureInput {
   eval::RpeUnit rpe_unit = eval::RpeUnit::kSeconds;
 };
 
+/// The poses of an estimate in the world of the ground truth, with its offset: positions by the alignment of
+/// the errors; where these leave the rotation open (`Evaluation::rotation_source`), orientations as
+/// `eval::complete_rotation` finds them, as in the rotation errors.
+[[nodiscard]] std::vector<TimedPose> aligned_poses(const FigureInput& input, const PlottedRun& run);
+
 /// path: plan and side view, to scale; a single estimate is colored by its error. axes: x, y, z over time.
 /// rotation: roll, pitch, yaw (R = Rz(yaw) Ry(pitch) Rx(roll)) over time. error: over time and distance.
 /// relative: errors of position, rotation and distance relative to the pose `rpe_delta` before, over time

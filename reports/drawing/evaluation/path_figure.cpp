@@ -50,8 +50,7 @@ PathView view_of(const FigureInput& input) {
   const Timestamp start = input.gt.poses.front().t;
   PathView view{.truth = timed_poses(input.gt, {}, start), .estimates = {}};
   view.is_gnss = input.gt.frame == eval::kGnssFrame;
-  for (const PlottedRun& run : input.runs)
-    view.estimates.push_back(timed_poses(*run.est, run.evaluation->alignment.S_w_v, start, input.offset_s));
+  for (const PlottedRun& run : input.runs) view.estimates.push_back(aligned_poses(input, run));
   constexpr double kAxisLength = 0.05;  // of the longest side of the path
   for (int axis = 0; input.path.pose_axes && axis < 3; ++axis)
     view.axis_length_m = std::max(view.axis_length_m, kAxisLength * extent(view.truth, axis).length());

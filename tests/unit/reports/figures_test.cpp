@@ -528,6 +528,28 @@ TEST(Figures, NameTheirAxes) {
   EXPECT_TRUE(has(FigureKind::kSpeed, "rotation rate [deg/s]"));
 }
 
+TEST(RotationFigure, HasTheOrientationsOfTheErrorsOnAStraightPath) {
+  Trajectory gt;
+  Trajectory est;
+  const Eigen::Quaterniond R(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()));
+  for (int i = 0; i <= 100; ++i) {
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(0.3 * std::sin(0.1 * i), Eigen::Vector3d::UnitY()));
+    const Eigen::Vector3d p(0.02 * i, 0.0, 0.0);
+    gt.poses.emplace_back(from_seconds(0.1 * i), Pose{q, p});
+    est.poses.emplace_back(from_seconds(0.1 * i), Pose{R * q, p});
+  }
+  const eval::Evaluation errors = eval::evaluate("strict:se3", {gt, est, {}});
+  ASSERT_LT(errors.ate_deg.value().max, 1e-3);
+  const std::vector<PlottedRun> runs{{"est", &est, &errors}};
+  const Drawing drawing = figure(FigureKind::kRotation, {.gt = gt, .runs = runs}, {});
+  const auto truth = lines_of(drawing, theme::kBlack, theme::kTruthWidth);
+  const auto estimate = lines_of(drawing, theme::kEstimates.front().color, theme::kEstimateWidth);
+  ASSERT_EQ(truth.size(), 3U);  // roll, pitch, yaw
+  ASSERT_EQ(estimate.size(), 3U);
+  for (std::size_t angle = 0; angle < truth.size(); ++angle)
+    EXPECT_NEAR(estimate[angle].points[20].y, truth[angle].points[20].y, 0.1) << angle;
+}
+
 TEST(BoxFigure, HasTheDensityOfTheErrorsBehindTheBoxes) {
   CircleRuns circles;
   for (std::size_t i = 0; i < circles.near_errors.per_pose.size(); ++i)
