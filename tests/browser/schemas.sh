@@ -141,9 +141,9 @@ cp "$work/profiles/profile.json" "$work/profile/once.json"
 profile 8 --duration 1s
 cp "$work/profiles/profile.json" "$work/profile/drift.json"
 profile 30 --device atlas_200
-mv "$work/profiles/device.json" "$work/device/atlas.json"
+cp "$work/profiles/device.json" "$work/device/atlas.json"
 command -v valgrind >/dev/null || skip "no valgrind; apt-get install valgrind"
 profile 2 --instructions
-mv "$work/profiles/instructions.json" "$work/instructions/two.json"
+cp "$work/profiles/instructions.json" "$work/instructions/two.json"
 
 node "$here/schemas.mjs" "$schemas" "$work"
