@@ -22,7 +22,9 @@ inline constexpr double kSegmentTolerance = 0.02;  ///< relative to the length o
 /// Every start, and the end closest to delta later. Tolerances: `strict_tolerance_s` over seconds, 2 % of
 /// delta over meters of the ground truth, 10 % of delta over degrees of its summed rotation; over frames, all
 /// pairs of matches that are as many apart.
-/// @param delta in `unit`, > 0
+/// @param matches in temporal order
+/// @param delta > 0
+/// @param unit of delta
 [[nodiscard]] PosePairs strict_pairs(MatchView matches, double delta, RpeUnit unit);
 
 /// d_ij of every pair [m].
