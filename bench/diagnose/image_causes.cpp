@@ -71,7 +71,6 @@ class FrameCauses {
 std::vector<Cause> content_causes(const RecordingSurvey& survey) {
   const auto& frames = survey.frames;
   const double gray = median_of(survey, &FrameStatistics::mean_gray);
-  const double sharpness = median_of(survey, &FrameStatistics::sharpness);
   const auto is_uniform = [&](std::size_t i) {
     return frames[i].deviation_gray < kUniformGray &&
            frames[i].deviation_gray <= kUniformRatio * frames[i].mean_gray;
@@ -81,6 +80,11 @@ std::vector<Cause> content_causes(const RecordingSurvey& survey) {
     return !is_uniform(i) && (frame.mean_gray < kDarkened * gray || frame.dark_ratio > kMostClipped ||
                               frame.bright_ratio > kMostClipped);
   };
+  std::vector<double> exposed;  // a dark image is coarser in gray, and looks sharper relative to its contrast
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!is_uniform(i) && !is_clipped_or_dark(i)) exposed.push_back(frames[i].sharpness);
+  }
+  const double sharpness = median(std::move(exposed));
   FrameCauses causes(survey);
   causes.add({.id = "blank",
               .name = "blank images",

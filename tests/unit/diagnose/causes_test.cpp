@@ -219,6 +219,17 @@ TEST(ImageCauses, TellDarkImagesFromBlankOnes) {
   EXPECT_FALSE(cause_named(causes, "blur"));
 }
 
+TEST(ImageCauses, CompareTheSharpnessOfFramesThatAreExposed) {
+  TurningRig rig({});
+  for (std::size_t i = 0; 5 * i < 3 * rig.survey.frames.size(); ++i) {
+    rig.survey.frames[i].dark_ratio = 0.9;  // clipped, with edges at the borders of black areas
+    rig.survey.frames[i].sharpness *= 3.0;
+  }
+  const std::vector<Cause> causes = image_causes(rig.info, rig.survey);
+  EXPECT_TRUE(cause_named(causes, "exposure"));
+  EXPECT_FALSE(cause_named(causes, "blur"));
+}
+
 TEST(ImageCauses, AreAbsentForSoundImages) {
   const TurningRig rig({});
   EXPECT_TRUE(image_causes(rig.info, rig.survey).empty());
