@@ -295,8 +295,10 @@ WorstFrames::WorstFrames(fs::path folder, std::size_t capacity, AnnotationStyle 
 }
 
 WorstFrames::~WorstFrames() {
-  std::error_code ignored;
-  fs::remove_all(collected_, ignored);
+  try {
+    remove_images(collected_);
+  } catch (const fs::filesystem_error&) {  // no destructor may throw: the next run removes them
+  }
 }
 
 void WorstFrames::finish() {

@@ -42,6 +42,7 @@ TEST(WorstFrames, KeepsTheFramesWithTheLargestError) {
   // Frame-to-frame errors of 0, 1, 0.5 and 2 m: frame 4 replaces frame 3.
   const double x[] = {0.0, 0.0, 1.0, 1.5, 3.5};
   for (int frame = 0; frame < 5; ++frame) add(worst, frame, x[frame]);
+  worst.finish();
   EXPECT_EQ(names_in(folder.path() / "p"), (std::set<std::string>{"000002.jpg", "000004.jpg"}));
   EXPECT_EQ(datasets::read_image(folder.path() / "p" / "000004.jpg").size(), cv::Size(400, 300));
 }
@@ -50,7 +51,15 @@ TEST(WorstFrames, DeletesOnlyTheImagesOfAnEarlierRun) {
   const TemporaryFolder folder;
   folder.write("p/000001.jpg", "old");
   folder.write("p/notes.txt", "mine");
-  const WorstFrames worst(folder.path() / "p", 2, {}, sequence_at_rest());
+  folder.write("p.new/notes.txt", "mine");
+  {
+    WorstFrames worst(folder.path() / "p", 2, {}, sequence_at_rest());
+    add(worst, 0, 0.0);
+    add(worst, 1, 1.0);
+  }  // interrupted
+  EXPECT_EQ(names_in(folder.path() / "p"), (std::set<std::string>{"000001.jpg", "notes.txt"}));
+  EXPECT_EQ(names_in(folder.path() / "p.new"), (std::set<std::string>{"notes.txt"}));
+  WorstFrames(folder.path() / "p", 2, {}, sequence_at_rest()).finish();
   EXPECT_EQ(names_in(folder.path() / "p"), (std::set<std::string>{"notes.txt"}));
 }
 
