@@ -304,8 +304,9 @@ WorstFrames::~WorstFrames() {
 void WorstFrames::finish() {
   remove_images(folder_);
   fs::create_directories(folder_);
-  for (const fs::directory_entry& entry : fs::directory_iterator(collected_))
-    fs::rename(entry.path(), folder_ / entry.path().filename());
+  for (const fs::directory_entry& entry : fs::directory_iterator(collected_)) {
+    if (entry.path().extension() == ".jpg") fs::rename(entry.path(), folder_ / entry.path().filename());
+  }
 }
 
 void WorstFrames::add(const FrameReport& report) {

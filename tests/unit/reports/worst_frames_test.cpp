@@ -61,6 +61,7 @@ TEST(WorstFrames, DeletesOnlyTheImagesOfAnEarlierRun) {
   EXPECT_EQ(names_in(folder.path() / "p.new"), (std::set<std::string>{"notes.txt"}));
   WorstFrames(folder.path() / "p", 2, {}, sequence_at_rest()).finish();
   EXPECT_EQ(names_in(folder.path() / "p"), (std::set<std::string>{"notes.txt"}));
+  EXPECT_EQ(names_in(folder.path() / "p.new"), (std::set<std::string>{"notes.txt"}));
 }
 
 }  // namespace
