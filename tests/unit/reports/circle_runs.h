@@ -27,11 +27,16 @@ inline Trajectory circle() {
   return path;
 }
 
-/// `circle` with an error that grows with time, and without the poses of [8 s, 12 s].
-inline Trajectory estimate(double error_m) {
+/// `circle` with a position error that grows with time, a rotation error that swings, and without the poses
+/// of [8 s, 12 s].
+inline Trajectory estimate(double error_m, double rotation_error_rad = 0.0) {
   Trajectory path = circle();
-  for (std::size_t i = 0; i < path.poses.size(); ++i)
-    path.poses[i].T_w_f.p.x() += error_m * static_cast<double>(i) / 200.0;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const double t_s = 0.1 * static_cast<double>(i);
+    Pose& pose = path.poses[i].T_w_f;
+    pose.p.x() += error_m * t_s / 20.0;
+    pose.q = pose.q * Eigen::AngleAxisd(rotation_error_rad * std::sin(t_s), Eigen::Vector3d::UnitX());
+  }
   std::erase_if(path.poses, [](const StampedPose& pose) {
     return pose.t > from_seconds(8.0) && pose.t < from_seconds(12.0);
   });

@@ -46,7 +46,7 @@ TEST(GoldenFigures, AreThoseOfEveryKindAndFormat) {
   std::ifstream rows(STILLPOINT_SOURCE_DIR "/tests/unit/reports/golden_figures.txt");
   for (std::string row; std::getline(rows, row);) golden.insert(row);
   const TemporaryFolder folder;
-  const CircleRuns circles;
+  const CircleRuns circles{.near = estimate(0.1, 0.02), .far = estimate(0.4, 0.05)};
   std::size_t count = 0;
   for (const auto& [kind, name] : enum_names(FigureKind{})) {
     for (const FigureInput& input : {circles.one(), circles.both()}) {
