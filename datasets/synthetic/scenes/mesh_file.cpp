@@ -223,6 +223,7 @@ std::vector<fs::path> companions_of_mesh(const fs::path& file) {
 void read_mesh(const fs::path& file, World& world, std::size_t max_texels) {
   if (file.extension() != ".ply" && file.extension() != ".obj")
     throw InputError(file.string(), "is not named as a PLY or OBJ file; convert the mesh to .ply or .obj");
+  if (!fs::is_regular_file(file)) throw InputError(file.string(), "no such file; check the path of --mesh");
   require_readable_textures(file);
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFile(

@@ -166,7 +166,7 @@ TEST(MeshFile, WhatCannotBeRenderedIsNamed) {
                                         "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
       {"gray.ply", "neither vertex colors nor a texture"});
   expect(folder.write("text.ply", "not a mesh\n"), {"text.ply", "cannot be read as a mesh"});
-  expect(folder.path() / "none.obj", {"none.obj", "cannot be read as a mesh"});
+  expect(folder.path() / "none.obj", {"none.obj", "no such file", "--mesh"});
   expect(folder.write("scan.stl", "solid\n"), {"scan.stl", ".ply or .obj"});
   expect(folder.write("seam.ply",
                       header + "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar "
