@@ -116,7 +116,8 @@ std::vector<SourceCommit> SourceBuilds::between(const SourceCommit& good, const 
 void SourceBuilds::add_tree(const SourceCommit& commit, const fs::path& tree) const {
   fs::remove_all(tree);  // of a build that was interrupted
   static_cast<void>(git({"worktree", "prune"}));
-  static_cast<void>(git({"worktree", "add", "--force", "--detach", tree.string(), commit.hash}));
+  // The second --force is for a work tree that is locked since the process that added it was killed.
+  static_cast<void>(git({"worktree", "add", "--force", "--force", "--detach", tree.string(), commit.hash}));
 }
 
 SourceBuild SourceBuilds::build(const SourceCommit& commit) const {

@@ -115,6 +115,25 @@ TEST(History, KeepsAsManyBuildsAsToldTo) {
   EXPECT_EQ(builds_in(project.file("kept.sqlite")).size(), 4u);
 }
 
+// A `git worktree add` that is killed leaves a locked work tree.
+TEST(History, ReplacesALockedWorkTree) {
+  const MadeUpProject& project = shared_project();
+  std::vector<std::string> arguments = history_arguments(project, "locked.sqlite");
+  arguments.insert(arguments.end(), {"--builds", project.file("locked"), "--max-commits", "1"});
+  ASSERT_EQ(project.run(arguments).exit_code, 0);
+  const fs::path tree =
+      fs::directory_iterator(project.file("locked"))->path() / kept_builds(project.file("locked")).at(0);
+  const std::string lock =
+      "git -C '" + project.file("repository") + "' worktree lock '" + tree.string() + "'";
+  ASSERT_EQ(std::system(lock.c_str()), 0);
+  fs::remove_all(tree);
+  fs::remove(fs::path(tree).concat(".built"));
+  std::ranges::replace(arguments, project.file("locked.sqlite"), project.file("another.sqlite"));
+  const ProgramResult result = project.run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_EQ(builds_in(project.file("another.sqlite")).size(), 2u);
+}
+
 // A repository with the presets of this project, whose program is the replay system.
 TEST(History, OfThisOdometryBuildsItsPreset) {
   const MadeUpProject& project = shared_project();
