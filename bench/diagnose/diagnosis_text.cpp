@@ -32,11 +32,14 @@ std::string title(const Diagnosis& diagnosis) {
          fmt::format("; {}{} trials\n", diagnosis.finished_run ? "the given run and " : "", diagnosis.trials);
 }
 
-std::string names(const std::vector<Cause>& causes) {
+/// With their effects; a large one that did not count is not told from chance.
+std::string names_of_others(const Diagnosis& diagnosis) {
   std::vector<std::string> parts;
-  for (const Cause& cause : causes) {
-    parts.push_back(cause.name);
-    parts.back() += " (" + (cause.error_ratio ? effect_text(*cause.error_ratio) : "not measured") + ")";
+  for (const Cause& cause : diagnosis.others) {
+    const bool is_large = cause.error_ratio && *cause.error_ratio <= 1.0 - diagnosis.least_effect;
+    parts.push_back(fmt::format("{} ({}{})", cause.name,
+                                cause.error_ratio ? effect_text(*cause.error_ratio) : "not measured",
+                                is_large ? ", within chance" : ""));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -58,7 +61,7 @@ nlohmann::ordered_json list(const std::vector<Cause>& causes) {
 std::string others_text(const Diagnosis& diagnosis) {
   if (diagnosis.others.empty()) return "";
   if (!diagnosis.foreign || !has_unmeasured(diagnosis))
-    return "found, with less effect: " + names(diagnosis.others) + "\n";
+    return "found, with less effect: " + names_of_others(diagnosis) + "\n";
   std::string text = "found; the effect needs a run of this odometry (leave RUN out):\n";
   std::size_t number = 0;
   for (const Cause& cause : diagnosis.others) {

@@ -180,8 +180,7 @@ std::vector<Option> options_of(SynthArguments& arguments) {
        &arguments.mesh},
       {"--rig",
        "Calibration and noise of the sensors: rig.toml, or YAML of other programs; its time offset and "
-       "read-out "
-       "time are rendered, but not written",
+       "read-out time are rendered, but not written",
        &arguments.rig},
       {"--times", "Recorded frame times, one per line [s]; a third field is the time of the depth image",
        &arguments.times},

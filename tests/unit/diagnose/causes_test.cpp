@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/diagnose/diagnosis.h"
+#include "bench/diagnose/diagnosis_text.h"
 #include "bench/diagnose/image_causes.h"
 #include "bench/diagnose/inertial_causes.h"
 #include "bench/diagnose/run_causes.h"
@@ -204,6 +205,15 @@ TEST(OtherCauses, BeginWithWhatTheDataShows) {
   for (const Cause& cause : causes) order.push_back(cause.id);
   EXPECT_EQ(order, (std::vector<std::string>{"gyro_axes", "blank", "truth_late", "depth_late", "imu_noise",
                                              "clock_drift"}));
+}
+
+TEST(DiagnosisText, SaysThatALargeEffectThatDoesNotCountMayBeChance) {
+  Diagnosis diagnosis{.error = 0.1, .corrected = 0.1, .least_effect = 0.1};
+  diagnosis.others = {{.id = "exposure", .name = "dark images", .consistent = false, .error_ratio = 0.71},
+                      {.id = "blur", .name = "blurred images", .consistent = false, .error_ratio = 0.95}};
+  const std::string text = diagnosis_text(diagnosis);
+  EXPECT_NE(text.find("dark images (-29 %, within chance), blurred images (-5 %)\n"), std::string::npos)
+      << text;
 }
 
 TEST(ImageCauses, TellDarkImagesFromBlankOnes) {
