@@ -61,8 +61,8 @@ check_systems --executor slurm --tasks 4
 
 # The calling program is killed as soon as the first task has a store, then a worker is killed: the second call waits for
 # the other tasks, and executes what is missing.
-write_plan many 12
-bench many many_local --jobs 2 || fail "local execution of 48 runs"
+write_plan many 5
+bench many many_local --jobs 2 || fail "local execution of 20 runs"
 bench many killed --executor slurm --tasks 4 &
 caller=$!
 has_store() { compgen -G "$work/killed.sqlite.jobs/*/job/store-*.sqlite" >/dev/null; }

@@ -100,8 +100,8 @@ expect_equal local packages
 echo "equal stores with copied programs"
 
 # The calling program and a worker are killed; a host that cannot be reached is left out.
-write_plan many 12
-bench many many_local --jobs 2 || fail "local execution of 48 runs"
+write_plan many 5
+bench many many_local --jobs 2 || fail "local execution of 20 runs"
 bench many killed "${by_ssh[@]}" &
 caller=$!
 job() { basename "$work"/killed.sqlite.jobs/*; }
