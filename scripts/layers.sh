@@ -86,6 +86,7 @@ row datasets/synthetic/sequence $scene core/types $trajectories datasets/calibra
   datasets/synthetic/sensors
 row datasets/catalogue core/base
 row datasets/download core/base
+row datasets/tiles core/base datasets/cache datasets/download datasets/io datasets/mapping
 row datasets/faults core/base core/geometry core/types datasets datasets/io datasets/synthetic datasets/synthetic/materials
 datasets="datasets datasets/io datasets/calibration datasets/formats datasets/synthetic/sequence"
 
@@ -146,12 +147,12 @@ row bench/cli/plan $execution bench/analysis bench/cli/data bench/profile/meters
 row bench/cli/analysis/import core/base core/types datasets/download datasets/io eval eval/io bench/model bench/process bench/store bench/store/maintenance
 row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan bench/run \
   bench/plan/execution bench/analysis bench/analysis/search bench/cli/analysis/import \
-  bench/executors bench/serve datasets/mapping reports/tables reports/text reports/drawing reports/drawing/evaluation reports/frames reports/page reports/dashboard reports/live
+  bench/executors bench/serve datasets/mapping datasets/tiles reports/tables reports/text reports/drawing reports/drawing/evaluation reports/frames reports/page reports/dashboard reports/live
 row bench/cli/stats $execution eval/metrics bench/store bench/systems bench/plan bench/analysis reports/tables
 row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
 
 # The minimal build: its commands, and the functions that it does not have.
-row bench/minimal core/base bench/config bench/cli bench/plan bench/run bench/systems datasets datasets/synthetic/sequence reports/drawing \
+row bench/minimal core/base bench/config bench/cli bench/plan bench/run bench/systems datasets datasets/synthetic/sequence datasets/tiles reports/drawing \
   reports/frames
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
@@ -167,7 +168,7 @@ libraries=(
   '<ceres/            ^core/backend/(factors|reference)/|^core/(loop|calibration)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
   '<opencv2/core[./]  ^bench/(diagnose|rivals|python)/|^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
-  '<opencv2/imgproc[./]  ^bench/rivals/|^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/frames/'
+  '<opencv2/imgproc[./]  ^bench/rivals/|^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults|tiles)/|^bench/micro/|^reports/frames/'
   '<opencv2/calib3d[./]  ^bench/rivals/|^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
@@ -176,6 +177,7 @@ libraries=(
   '<sqlite3           ^bench/store/|^datasets/bags/'
   '<zstd              ^bench/store/|^datasets/bags/bag_chunks\.cpp$'
   '<(cairo|pango/)   ^reports/drawing/drawing_module\.cpp$'
+  '<proj\.h          ^datasets/tiles/projection_module\.cpp$'
   '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/cli/'

@@ -29,7 +29,7 @@ packages=(
   openimageio-tools libbz2-dev liblz4-dev
   libembree-dev libtbb-dev libassimp-dev
   libsqlite3-dev libzstd-dev libmicrohttpd-dev libpango1.0-dev fonts-liberation
-  libcurl4-openssl-dev libarchive-dev libssl-dev
+  libcurl4-openssl-dev libarchive-dev libssl-dev libproj-dev
   libgtest-dev libbenchmark-dev
   universal-ctags
 )

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the commands of the minimal build (STILLPOINT_MINIMAL) could call, but which it does not have: the
-// renderer and the registry of sequences, descriptions of other systems, PDF and PNG files, the files of
-// pages, and recordings for viewers.
+// renderer and the registry of sequences, descriptions of other systems, PDF and PNG files, map
+// tiles, the files of pages, and recordings for viewers.
 #include "bench/config/toml_source.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/run/sequence_source.h"
 #include "bench/systems/external_system.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
+#include "datasets/tiles/map_tiles.h"
 #include "reports/drawing/drawing_module.h"
 #include "reports/frames/run_recording.h"
 
@@ -38,6 +39,13 @@ std::vector<bench::DifferentKey> bench::different_keys(const ExternalSystem&, co
 }
 
 std::span<const bench::EmbeddedFile> bench::web_files() { return {}; }
+
+void datasets::require_map_tiles(const MapTiles&) {
+  throw InputError("--map-tiles", "this build has no map tiles (STILLPOINT_MINIMAL); use a full build");
+}
+
+/// Never reached: they are required before.
+std::vector<std::uint8_t> datasets::map_image(const MapTiles&, const MapWindow&) { return {}; }
 
 const report::DrawingModule* report::drawing_module() { return nullptr; }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/mapping/occupancy_grid.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "datasets/io/image_io.h"
 #include "datasets/io/sensor_yaml.h"
 
@@ -38,6 +40,33 @@ OccupancyGrid read_occupancy_grid(const std::filesystem::path& yaml) {
       grid.pixels.push_back(is_negated ? static_cast<std::uint8_t>(255 - pixels[column]) : pixels[column]);
   }
   return grid;
+}
+
+std::vector<std::uint8_t> map_image(const OccupancyGrid& grid, const MapWindow& window) {
+  const double width_m = window.x_high_m - window.x_low_m;
+  const double height_m = window.y_high_m - window.y_low_m;
+  const double cells = width_m / window.columns / grid.resolution_m;  // along a pixel
+  const int samples = static_cast<int>(std::clamp(std::ceil(cells), 1.0, 4.0));
+  std::vector<std::uint8_t> image;
+  image.reserve(static_cast<std::size_t>(window.rows) * static_cast<std::size_t>(window.columns) * 3);
+  bool has_cells = false;
+  for (int k = 0; k < window.rows * window.columns; ++k) {
+    int sum = 0;
+    for (int s = 0; s < samples * samples; ++s) {
+      const double to_right = (k % window.columns + (s % samples + 0.5) / samples) / window.columns;
+      const double down = (k / window.columns + (s / samples + 0.5) / samples) / window.rows;
+      const std::optional<std::uint8_t> cell =
+          grid.at(window.x_low_m + to_right * width_m, window.y_high_m - down * height_m);
+      has_cells |= cell.has_value();
+      sum += cell.value_or(255);
+    }
+    image.insert(image.end(), 3, static_cast<std::uint8_t>(sum / (samples * samples)));
+  }
+  if (!has_cells) {
+    throw InputError("--occupancy-grid",
+                     "no cell of the map is near the paths; it must be in the world of the ground truth");
+  }
+  return image;
 }
 
 }  // namespace stillpoint::datasets

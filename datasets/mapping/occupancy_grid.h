@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "datasets/mapping/map_window.h"
+
 namespace stillpoint::datasets {
 
 /// An image of a plane, whose lower left corner is `origin_m` in the frame of the map.
@@ -28,5 +30,10 @@ struct OccupancyGrid {
 /// @param yaml a file of map_server
 /// @throws InputError naming file and key if a value is missing or invalid, or as `read_gray`
 [[nodiscard]] OccupancyGrid read_occupancy_grid(const std::filesystem::path& yaml);
+
+/// The part of the grid in a window, as a `MapSource` makes it: white beyond the grid, and the mean of the
+/// cells where several are in a pixel.
+/// @throws InputError naming --occupancy-grid if no cell is in the window
+[[nodiscard]] std::vector<std::uint8_t> map_image(const OccupancyGrid& grid, const MapWindow& window);
 
 }  // namespace stillpoint::datasets

@@ -96,10 +96,9 @@ struct SvgWriter {
     out += fmt::format(">{}</text>\n", escape_html(label.text));
   }
   void operator()(const Raster& raster) const {
-    const std::size_t rows = raster.pixels.size() / raster.columns;
     Raster alone = raster;
     alone.top_left = {0.0, 0.0};
-    alone.bottom_right = {static_cast<double>(raster.columns), static_cast<double>(rows)};
+    alone.bottom_right = {static_cast<double>(raster.columns), static_cast<double>(raster.rows())};
     const std::string png =
         png_bytes({.width = alone.bottom_right.x, .height = alone.bottom_right.y, .marks = {alone}}, 1.0);
     out += fmt::format(

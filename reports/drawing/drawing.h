@@ -58,12 +58,15 @@ struct Label {
   bool upwards = false;  ///< from bottom to top
 };
 
-/// An image of gray values, drawn without interpolation.
+/// An image, drawn without interpolation.
 struct Raster {
   Point2 top_left;
   Point2 bottom_right;
   std::size_t columns = 0;
-  std::vector<unsigned char> pixels;  ///< row by row from the top, 0 black to 255 white; not empty
+  std::vector<unsigned char>
+      pixels;  ///< red, green and blue of each pixel, row by row from the top; not empty
+
+  [[nodiscard]] std::size_t rows() const { return pixels.size() / (3 * columns); }
 };
 
 using Mark = std::variant<Polyline, Polygon, Disc, Label, Raster>;

@@ -93,15 +93,15 @@ class Painter {
   }
   void operator()(const Raster& raster) const {
     const int columns = static_cast<int>(raster.columns);
-    const int rows = static_cast<int>(raster.pixels.size() / raster.columns);
+    const int rows = static_cast<int>(raster.rows());
     const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, columns, rows),
                           &cairo_surface_destroy);
     unsigned char* const data = cairo_image_surface_get_data(surface.get());
     const int stride = cairo_image_surface_get_stride(surface.get());
     for (int row = 0; row < rows; ++row) {
-      const unsigned char* const from = &raster.pixels[static_cast<std::size_t>(row) * raster.columns];
+      const unsigned char* const from = &raster.pixels[static_cast<std::size_t>(row) * raster.columns * 3];
       for (int column = 0; column < columns; ++column)  // blue, green, red and an unused byte
-        std::fill_n(data + row * stride + 4 * column, 4, from[column]);
+        std::reverse_copy(from + 3 * column, from + 3 * column + 3, data + row * stride + 4 * column);
     }
     cairo_surface_mark_dirty(surface.get());
     cairo_save(context_);

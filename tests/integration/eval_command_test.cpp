@@ -6,9 +6,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include <opencv2/core.hpp>
+
 #include "core/geometry/so3.h"
+#include "datasets/io/image_io.h"
 #include "eval/io/openloris_file.h"
 #include "eval/io/trajectory_file.h"
 #include "tests/support/program.h"
@@ -60,6 +64,57 @@ TEST(EvalCommand, WritesAPlotAndTheErrorsOfAllPoses) {
   long lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
   EXPECT_EQ(lines, 1 + 401);  // the header and all poses
+}
+
+// Tiles of zoom 22 are 9.6 m wide at the equator; four of them meet at its zero meridian. The local plane has
+// its origin there: tiles are red to the north-east of it, blue to the south-west, else white.
+TEST(EvalCommand, DrawsMapTilesBelowThePaths) {
+  const PathFiles files;
+  constexpr int kMiddle = 1 << 21;
+  for (int x = kMiddle - 4; x < kMiddle + 4; ++x) {
+    std::filesystem::create_directories(files.folder.path() / "22" / std::to_string(x));
+    for (int y = kMiddle - 4; y < kMiddle + 4; ++y) {
+      const bool is_east = x >= kMiddle;
+      const bool is_north = y < kMiddle;
+      const cv::Scalar color = is_east != is_north ? cv::Scalar(255, 255, 255)
+                               : is_east           ? cv::Scalar(255, 0, 0)
+                                                   : cv::Scalar(0, 0, 255);
+      datasets::write_png(files.folder.path() / "22" / std::to_string(x) / (std::to_string(y) + ".png"),
+                          cv::Mat(256, 256, CV_8UC3, color));
+    }
+  }
+  const auto plot = [&](const std::string& name) {
+    const std::filesystem::path file = files.folder.path() / name;
+    const ProgramResult result =
+        run_program({"eval", files.gt, files.est, "--plot", file.string(), "--figure", "path", "--map-tiles",
+                     "file://" + files.folder.path().string() + "/{z}/{x}/{y}.png", "--map-crs",
+                     "+proj=aeqd +lat_0=0 +lon_0=0 +datum=WGS84", "--map-credit", "tiles of this test"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return file;
+  };
+  const cv::Mat image = datasets::read_image(plot("plot.png"));
+  // Half of the contrast of the tiles.
+  const auto center_of = [&](const cv::Vec3b& color) {
+    cv::Point2d sum;
+    double count = 0.0;
+    for (int row = 0; row < image.rows; ++row) {
+      for (int column = 0; column < image.cols; ++column) {
+        if (image.at<cv::Vec3b>(row, column) != color) continue;
+        sum += cv::Point2d(column, row);
+        ++count;
+      }
+    }
+    EXPECT_GT(count, 1000.0);
+    return sum / count;
+  };
+  const cv::Point2d red = center_of({255, 128, 128});
+  const cv::Point2d blue = center_of({128, 128, 255});
+  EXPECT_GT(red.x, blue.x + 100.0);
+  EXPECT_LT(red.y, blue.y - 100.0);
+  std::ifstream svg(plot("plot.svg"));
+  const std::string text{std::istreambuf_iterator<char>(svg), {}};
+  EXPECT_NE(text.find("<image "), std::string::npos);
+  EXPECT_NE(text.find(">Map: tiles of this test</text>"), std::string::npos);
 }
 
 /// The rows of a path with other columns: nanoseconds, and a separator.

@@ -63,7 +63,9 @@ refused "writes none" eval "$sequence/groundtruth.txt" "$scratch/run/trajectory.
 refused "writes none" eval openloris "$scratch" --ground-truth "$scratch" --figure "$scratch/figure"
 [[ ! -e "$scratch/figure.svg" ]] || fail "eval openloris writes one of two figures"
 
-absent='assimp|embree|curl|microhttpd|archive|cairo|sqlite|libcrypto|bz2'
+refused "no map tiles" eval "$sequence/groundtruth.txt" "$scratch/run/trajectory.tum" --plot "$scratch/plot.svg" \
+  --map-tiles "file:///{z}/{x}/{y}.png" --map-crs EPSG:32632
+absent='assimp|embree|curl|microhttpd|archive|cairo|libproj|sqlite|libcrypto|bz2'
 ldd "$program" >"$scratch/output" || fail "ldd"
 if grep -E "$absent" "$scratch/output"; then fail "the program opens the libraries above"; fi
 # Debian's OpenCV opens TBB; the program itself does not.

@@ -50,7 +50,7 @@ stage libembree-dev libceres-dev
 run_setup --minimal || fail "--minimal is refused"
 [[ "$(asked)" == *"install --no-install-recommends libceres-dev" ]] || fail "--minimal installs more: $(asked)"
 run_setup --minimal --list || fail "--minimal --list is refused"
-if grep -qE 'assimp|embree|tbb|sqlite|curl|archive|cairo|microhttpd|gtest' "$scratch/output"; then
+if grep -qE 'assimp|embree|tbb|sqlite|curl|archive|cairo|microhttpd|proj|gtest' "$scratch/output"; then
   fail "--minimal lists what it does not need"
 fi
 

@@ -286,6 +286,16 @@ std::vector<Option> figure_options(EvalArguments& a) {
        {1e-9, 100}},
       {"--occupancy-grid", "Map below the paths in x and y: YAML file of map_server, in the world of GT",
        &a.occupancy_grid},
+      {"--map-tiles",
+       "Map tiles below the paths in x and y: an address with {z}, {x} and {y} (https:// or file:///); those "
+       "of a "
+       "server are kept in the cache folder",
+       &a.map_tiles},
+      {"--map-crs",
+       "Coordinate reference system of GT (x east, y north) for --map-tiles: \"EPSG:32632\", or "
+       "\"+proj=aeqd +lat_0=48 +lon_0=11 +datum=WGS84\" of a local plane",
+       &a.map_crs},
+      {"--map-credit", "Attribution that the provider of --map-tiles requires", &a.map_credit},
       {"--error-axis",
        "What the figures error, relative and transform are over: " + enum_list<report::ErrorAxis>() +
            " [time; error: distance, too]",

@@ -12,6 +12,7 @@
 #include "bench/cli/command_line.h"
 #include "core/base/error.h"
 #include "datasets/mapping/occupancy_grid.h"
+#include "datasets/tiles/map_tiles.h"
 #include "eval/io/text_reader.h"
 #include "reports/drawing/evaluation/figures.h"
 
@@ -62,14 +63,15 @@ bool draws(const EvalArguments& arguments, std::initializer_list<report::FigureK
 
 /// @throws InputError naming the first option of the path figure that changes nothing of what is drawn
 void require_path_figure(const EvalArguments& arguments) {
-  const std::array<std::pair<const char*, bool>, 7> options{
+  const std::array<std::pair<const char*, bool>, 8> options{
       {{"--plot-mode", !arguments.plot_mode.empty()},
        {"--path-mark", !arguments.path_marks.empty()},
        {"--path-color", !arguments.path_color.empty()},
        {"--colormap-min", arguments.colormap_min > 0.0},
        {"--colormap-max", arguments.colormap_max > 0.0},
        {"--colormap-percentile", arguments.colormap_percentile > 0.0},
-       {"--occupancy-grid", !arguments.occupancy_grid.empty()}}};
+       {"--occupancy-grid", !arguments.occupancy_grid.empty()},
+       {"--map-tiles", !arguments.map_tiles.empty()}}};
   const bool draws_path = !arguments.map.empty() || draws(arguments, {report::FigureKind::kPath});
   for (const auto& [name, is_given] : options) {
     if (!is_given) continue;
@@ -79,6 +81,47 @@ void require_path_figure(const EvalArguments& arguments) {
     if (colors && arguments.files.estimates.size() > 1)
       throw InputError(name, "only the path of a single estimate is colored by its error; give one EST");
   }
+}
+
+/// @throws InputError for a map that is not below the paths, or lacks what it requires
+void require_map(const EvalArguments& arguments, std::optional<report::PlotMode> mode) {
+  const bool has_tiles = !arguments.map_tiles.empty();
+  const bool has_plane = !mode || *mode == report::PlotMode::kXy || *mode == report::PlotMode::kYx;
+  for (const auto& [name, is_given] :
+       {std::pair{"--occupancy-grid", !arguments.occupancy_grid.empty()}, {"--map-tiles", has_tiles}}) {
+    if (is_given && !has_plane) throw InputError(name, "is a map in x and y; use --plot-mode xy or yx");
+  }
+  for (const auto& [name, value] :
+       {std::pair{"--map-crs", &arguments.map_crs}, std::pair{"--map-credit", &arguments.map_credit}}) {
+    if (!has_tiles && !value->empty()) throw InputError(name, "changes --map-tiles only; add it");
+  }
+  if (!has_tiles) return;
+  if (!arguments.occupancy_grid.empty())
+    throw InputError("--map-tiles", "cannot be combined with --occupancy-grid; omit one of them");
+  if (arguments.map_crs.empty()) {
+    throw InputError("--map-tiles",
+                     "requires the coordinate reference system of the ground truth; add for example "
+                     "--map-crs EPSG:32632");
+  }
+  if (arguments.map_tiles.starts_with("http") && arguments.map_credit.empty()) {
+    throw InputError("--map-tiles",
+                     "tiles of a server require the attribution of their provider; add for example "
+                     "--map-credit \"OpenStreetMap contributors\"");
+  }
+  datasets::require_map_tiles({arguments.map_tiles, arguments.map_crs});
+}
+
+/// The map below the paths; empty without one.
+datasets::MapSource map_source(const EvalArguments& arguments) {
+  if (!arguments.map_tiles.empty()) {
+    return [tiles = datasets::MapTiles{arguments.map_tiles, arguments.map_crs}](const auto& window) {
+      return datasets::map_image(tiles, window);
+    };
+  }
+  if (arguments.occupancy_grid.empty()) return {};
+  return [grid = datasets::read_occupancy_grid(arguments.occupancy_grid)](const auto& window) {
+    return datasets::map_image(grid, window);
+  };
 }
 
 /// @throws InputError for an option of the path figure that is unknown or has nothing to change
@@ -100,10 +143,8 @@ report::PathOptions path_options(const EvalArguments& arguments) {
   if (arguments.colormap_percentile > 0.0) options.most_percentile = arguments.colormap_percentile;
   if (options.most_error && arguments.colormap_percentile > 0.0)
     throw InputError("--colormap-percentile", "is another upper limit than --colormap-max; omit one of them");
-  const bool has_plane =
-      !options.mode || *options.mode == report::PlotMode::kXy || *options.mode == report::PlotMode::kYx;
-  if (!arguments.occupancy_grid.empty() && !has_plane)
-    throw InputError("--occupancy-grid", "is a map in x and y; use --plot-mode xy or yx");
+  require_map(arguments, options.mode);
+  options.map_credit = arguments.map_credit;
   return options;
 }
 
@@ -157,9 +198,7 @@ void write_figures(const EvalArguments& arguments, const Trajectory& gt,
     plotted.push_back({run.name, &run.est, &run.evaluations.front()});
   report::FigureInput input{.gt = gt, .runs = plotted, .offset_s = arguments.offset_s};
   input.path = path_options(arguments);
-  std::optional<datasets::OccupancyGrid> grid;
-  if (!arguments.occupancy_grid.empty())
-    input.path.grid = &grid.emplace(datasets::read_occupancy_grid(arguments.occupancy_grid));
+  input.path.map = map_source(arguments);
   input.error_axis = error_axis(arguments);
   const RpeDelta delta = rpe_deltas(arguments).front();
   input.rpe_delta = delta.value;

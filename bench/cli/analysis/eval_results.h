@@ -42,6 +42,9 @@ struct EvalArguments {
   double colormap_max = 0.0;
   double colormap_percentile = 0.0;
   std::string occupancy_grid;
+  std::string map_tiles;
+  std::string map_crs;
+  std::string map_credit;
   std::string error_axis;
   std::vector<std::string> labels;
   std::string width = "column";

@@ -23,8 +23,8 @@ def main(arguments):
         sys.exit(f"plot_store: error: no run has the metric {metric}; there are {', '.join(runs.columns[17:])}")
     print(runs.groupby(["sequence", "variant"])[metric].describe()[["count", "min", "50%", "max"]])
     figure, axes = pyplot.subplots(layout="constrained")
-    runs.boxplot(metric, by=["sequence", "variant"], ax=axes, rot=20)
-    axes.set(title="", ylabel=metric)
+    runs.boxplot(metric, by=["sequence", "variant"], ax=axes, vert=False)  # long names do not overlap
+    axes.set(title="", xlabel=metric, ylabel="")
     figure.suptitle("")
     figure.savefig(arguments[1])
 

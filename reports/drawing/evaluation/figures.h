@@ -11,7 +11,7 @@
 
 #include "core/base/fields.h"
 #include "core/types/trajectory.h"
-#include "datasets/mapping/occupancy_grid.h"
+#include "datasets/mapping/map_window.h"
 #include "eval/protocols/protocol.h"
 #include "reports/drawing/chart.h"
 #include "reports/drawing/curves.h"
@@ -91,7 +91,8 @@ struct PathOptions {
   bool pose_axes = false;            ///< of about 20 poses of each path
   bool correspondences = false;      ///< lines from poses to the ground truth at their times
   /// Map below the paths in the plane of x and y, in the world of the ground truth; at half of its contrast.
-  const datasets::OccupancyGrid* grid = nullptr;
+  datasets::MapSource map = {};
+  std::string map_credit = {};  ///< who made the map; at the border of the figure
 };
 
 struct FigureInput {

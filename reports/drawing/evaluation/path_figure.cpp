@@ -38,6 +38,7 @@ struct PathView {
   std::vector<std::vector<TimedPose>> estimates;
   bool is_gnss = false;
   double axis_length_m = 0.0;  ///< of poses; 0: not drawn
+  double map_margin_m = 0.0;   ///< of the map around the paths; 0: no map
 };
 
 ValueRange extent(const std::vector<TimedPose>& poses, int axis) {
@@ -52,8 +53,11 @@ PathView view_of(const FigureInput& input) {
   view.is_gnss = input.gt.frame == eval::kGnssFrame;
   for (const PlottedRun& run : input.runs) view.estimates.push_back(aligned_poses(input, run));
   constexpr double kAxisLength = 0.05;  // of the longest side of the path
-  for (int axis = 0; input.path.pose_axes && axis < 3; ++axis)
-    view.axis_length_m = std::max(view.axis_length_m, kAxisLength * extent(view.truth, axis).length());
+  constexpr double kMapMargin = 0.15;
+  double longest_m = 0.0;
+  for (int axis = 0; axis < 3; ++axis) longest_m = std::max(longest_m, extent(view.truth, axis).length());
+  if (input.path.pose_axes) view.axis_length_m = kAxisLength * longest_m;
+  if (input.path.map) view.map_margin_m = kMapMargin * longest_m;
   return view;
 }
 
@@ -65,7 +69,8 @@ ValueRange extent(const PathView& view, int axis) {
     range.add(own.high);
   }
   range = padded(range, 0.05);
-  return {range.low - view.axis_length_m, range.high + view.axis_length_m};
+  const double margin_m = view.axis_length_m + (axis < 2 ? view.map_margin_m : 0.0);
+  return {range.low - margin_m, range.high + margin_m};
 }
 
 /// Axes to the right and up of the plane in which the ground truth is longest, in the order of the alphabet,
@@ -364,35 +369,33 @@ void draw_paths(Drawing& drawing, const PlotArea& area, const FigureInput& input
   add(end_mark(place(view.truth.back()), theme::kBlack));
 }
 
-/// The part of the grid in the plot area, at 300 pixels per inch. Black becomes a gray on which lines are
-/// seen.
+/// The map in the plot area, at 300 pixels per inch. Black becomes a gray on which lines are seen.
 /// @param right axis to the right: 0 (x) or 1 (y)
-void draw_grid(Drawing& drawing, const PlotArea& area, const datasets::OccupancyGrid& grid, int right) {
+void draw_map(Drawing& drawing, const PlotArea& area, const datasets::MapSource& map, int right) {
   const auto pixels_of = [](double length) {
-    return static_cast<int>(std::clamp(std::ceil(length * theme::kPixelsPerInch / 72.0), 1.0, 4000.0));
+    return static_cast<std::size_t>(
+        std::clamp(std::ceil(length * theme::kPixelsPerInch / 72.0), 1.0, 4000.0));
   };
-  const int columns = pixels_of(area.bottom_right.x - area.top_left.x);
-  const int rows = pixels_of(area.bottom_right.y - area.top_left.y);
-  const double pixel_m = area.x.length() / columns;
-  const int samples = static_cast<int>(std::clamp(std::ceil(pixel_m / grid.resolution_m), 1.0, 4.0));
-  Raster raster{area.top_left, area.bottom_right, static_cast<std::size_t>(columns), {}};
-  bool has_cells = false;
-  for (int k = 0; k < rows * columns; ++k) {
-    int sum = 0;
-    for (int s = 0; s < samples * samples; ++s) {
-      const double to_right = (k % columns + (s % samples + 0.5) / samples) / columns;
-      const double down = (k / columns + (s / samples + 0.5) / samples) / rows;
-      const double along = area.x.low + to_right * area.x.length();
-      const double up = area.y.high - down * area.y.length();
-      const std::optional<std::uint8_t> cell = right == 0 ? grid.at(along, up) : grid.at(up, along);
-      has_cells |= cell.has_value();
-      sum += cell.value_or(255);
-    }
-    raster.pixels.push_back(static_cast<unsigned char>(255 - (255 - sum / (samples * samples)) / 2));
-  }
-  if (!has_cells) {
-    throw InputError("--occupancy-grid",
-                     "no cell of the map is near the paths; it must be in the world of the ground truth");
+  const std::size_t columns = pixels_of(area.bottom_right.x - area.top_left.x);
+  const std::size_t rows = pixels_of(area.bottom_right.y - area.top_left.y);
+  const bool is_upright = right == 0;
+  const ValueRange& x = is_upright ? area.x : area.y;
+  const ValueRange& y = is_upright ? area.y : area.x;
+  const std::vector<std::uint8_t> image = map({.x_low_m = x.low,
+                                               .x_high_m = x.high,
+                                               .y_low_m = y.low,
+                                               .y_high_m = y.high,
+                                               .columns = static_cast<int>(is_upright ? columns : rows),
+                                               .rows = static_cast<int>(is_upright ? rows : columns)});
+  Raster raster{area.top_left, area.bottom_right, columns, {}};
+  raster.pixels.reserve(image.size());
+  for (std::size_t k = 0; k < rows * columns; ++k) {
+    const std::size_t down = k / columns;
+    const std::size_t to_right = k % columns;
+    // With y to the right, the rows of the image from below are columns, and x is up.
+    const std::size_t pixel = is_upright ? k : (columns - 1 - to_right) * rows + (rows - 1 - down);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      raster.pixels.push_back(static_cast<unsigned char>(255 - (255 - image[3 * pixel + channel]) / 2));
   }
   drawing.marks.push_back(std::move(raster));
 }
@@ -401,8 +404,7 @@ ChartPanel path_panel(const FigureInput& input, const PathView& view, int right,
   return {.x = {extent(view, right), axis_title(view, right)},
           .y = {extent(view, up), axis_title(view, up)},
           .draw = [&input, right, up, P = plane_of(right, up)](Drawing& drawing, const PlotArea& area) {
-            if (input.path.grid != nullptr && right + up == 1)
-              draw_grid(drawing, area, *input.path.grid, right);
+            if (input.path.map && right + up == 1) draw_map(drawing, area, input.path.map, right);
             draw_paths(drawing, area, input, P);
           }};
 }
@@ -417,7 +419,7 @@ void add_scale_bar(ChartPanel& panel, double font) {
 /// Plan and side view in which the ground truth is longest.
 std::vector<ChartPanel> plan_and_side(const FigureInput& input, const PathView& view, double font) {
   const std::array<int, 3> axes =
-      input.path.grid == nullptr ? longest_axes(view) : std::array{0, 1, 2};  // of the map
+      input.path.map ? std::array{0, 1, 2} : longest_axes(view);  // those of the map
   ChartPanel plan = path_panel(input, view, axes[0], axes[1]);
   ChartPanel side = path_panel(input, view, axes[0], axes[2]);
   // A path that is higher than wide is in a square, so that both views have the same scale.
@@ -556,6 +558,8 @@ Chart path_chart(const FigureInput& input, const FigureSize& size) {
     add_scale_bar(chart.panels.front(), size.font_size_pt);
   }
   if (input.path.pose_axes) chart.note = "Axes of poses: x red, y green, z blue.";
+  if (!input.path.map_credit.empty())
+    chart.note += (chart.note.empty() ? "Map: " : " Map: ") + input.path.map_credit;
   if (input.runs.size() == 1) {
     const ColorBar bar = color_bar_of(input);
     if (bar.most > bar.least) chart.color_bar = bar;

@@ -36,16 +36,16 @@ TEST(SvgText, HasDashesAndTextThatRunsUpwards) {
   EXPECT_NE(svg.find("transform=\"rotate(-90 2.00 5.00)\">up</text>"), std::string::npos);
 }
 
-// Two pixels, black and white, over 20 x 10 units.
+// Two pixels, black and orange, over 20 x 10 units.
 TEST(Rasters, AreDrawnInAllFormats) {
   const Drawing drawing{
-      .width = 20.0, .height = 10.0, .marks = {Raster{{0.0, 0.0}, {20.0, 10.0}, 2, {0, 255}}}};
+      .width = 20.0, .height = 10.0, .marks = {Raster{{0.0, 0.0}, {20.0, 10.0}, 2, {0, 0, 0, 255, 128, 64}}}};
   EXPECT_NE(svg_text(drawing).find("<image x=\"0.00\" y=\"0.00\" width=\"20.00\" height=\"10.00\""),
             std::string::npos);
   EXPECT_NE(svg_text(drawing).find("base64,iVBORw0KGgo"), std::string::npos);  // the signature of PNG
   const cv::Mat image = datasets::decode_image(png_bytes(drawing, 1.0), "raster");
   EXPECT_EQ(image.at<cv::Vec3b>(5, 9), cv::Vec3b(0, 0, 0));
-  EXPECT_EQ(image.at<cv::Vec3b>(5, 10), cv::Vec3b(255, 255, 255));
+  EXPECT_EQ(image.at<cv::Vec3b>(5, 10), cv::Vec3b(255, 128, 64));
   EXPECT_NE(pdf_text({&drawing, 1}).find("/Image"), std::string::npos);
   const std::array<Drawing, 2> two{drawing, drawing};
   EXPECT_EQ(std::get<Raster>(stacked(two).marks[1]).bottom_right.y, 20.0);

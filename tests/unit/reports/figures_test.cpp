@@ -11,6 +11,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "datasets/mapping/occupancy_grid.h"
 #include "eval/io/nmea_file.h"
 #include "reports/drawing/curves.h"
 #include "tests/support/expect_input_error.h"
@@ -264,7 +265,11 @@ TEST(PathFigure, HasAMapBelowThePaths) {
   const std::size_t column = 30;  // y in [1, 1.1), x in (-0.1, 0]
   grid.pixels[(39 - from_below) * 40 + column] = 0;
   FigureInput input = circles.both();
-  input.path.grid = &grid;
+  datasets::MapWindow drawn;
+  input.path.map = [&](const datasets::MapWindow& window) {
+    drawn = window;
+    return datasets::map_image(grid, window);
+  };
   for (const PlotMode mode : {PlotMode::kXy, PlotMode::kYx}) {
     input.path.mode = mode;
     const Drawing drawing = figure(FigureKind::kPath, input, {});
@@ -272,14 +277,16 @@ TEST(PathFigure, HasAMapBelowThePaths) {
         std::ranges::find_if(drawing.marks, [](const Mark& m) { return std::holds_alternative<Raster>(m); });
     ASSERT_NE(mark, drawing.marks.end());
     const auto& raster = std::get<Raster>(*mark);
+    // 15 % of the 4 m of the path on each side.
+    EXPECT_LT(std::max(drawn.x_low_m, drawn.y_low_m), -2.6);
+    EXPECT_GT(std::min(drawn.x_high_m, drawn.y_high_m), 2.6);
     double x = 0.0;  // center of the dark pixels, as a fraction of the plot area
     double y = 0.0;
     double count = 0.0;
-    const std::size_t rows = raster.pixels.size() / raster.columns;
-    for (std::size_t i = 0; i < raster.pixels.size(); ++i) {
-      if (raster.pixels[i] > 140) continue;
+    for (std::size_t i = 0; i < raster.rows() * raster.columns; ++i) {
+      if (raster.pixels[3 * i] > 140) continue;
       x += (static_cast<double>(i % raster.columns) + 0.5) / static_cast<double>(raster.columns);
-      y += (static_cast<double>(i / raster.columns) + 0.5) / static_cast<double>(rows);
+      y += (static_cast<double>(i / raster.columns) + 0.5) / static_cast<double>(raster.rows());
       ++count;
     }
     ASSERT_GT(count, 0.0);
