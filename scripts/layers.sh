@@ -144,7 +144,7 @@ row bench/cli/run $execution bench/systems core/calibration core/config core/geo
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/mapping datasets/synthetic/sequence eval/io eval/metrics eval/trajectory bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/analysis bench/cli/data bench/profile/meters bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/text reports/page
-row bench/cli/analysis/import core/base core/types datasets/download datasets/io eval eval/io bench/model bench/process bench/store bench/store/maintenance
+row bench/cli/analysis/import core/base core/types datasets/download datasets/io eval eval/compare eval/io bench/model bench/process bench/store bench/store/maintenance
 row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan bench/run \
   bench/plan/execution bench/analysis bench/analysis/search bench/cli/analysis/import \
   bench/executors bench/serve datasets/mapping datasets/tiles reports/tables reports/text reports/drawing reports/drawing/evaluation reports/frames reports/page reports/dashboard reports/live

@@ -255,16 +255,23 @@ TEST(StoreImport, AnExperimentOfVslamLabHasItsFailedRunsAndNoScale) {
                                             results.path("benchmark")};
   const ProgramResult first = results.import("exp.yaml", options);
   EXPECT_EQ(first.out, "2 runs added, 0 already present\n") << first.err;
-  EXPECT_NEAR(results.ate_m(",orbslam2,walk,desk,"), 0.01, 1e-3) << results.tidy();
+  EXPECT_NEAR(results.ate_m(",orbslam2,walk,RGBDTUM/desk,"), 0.01, 1e-3) << results.tidy();
   const ProgramResult list = run_program({"store", "list", results.path("s.sqlite")});
   EXPECT_NE(list.out.find("wrote no trajectory"), std::string::npos) << list.out;
 
   const ProgramResult folder =
       results.import("evaluation/walk", {"--truth", results.path("benchmark"), "--system", "orb"});
   EXPECT_EQ(folder.out, "1 runs added, 0 already present\n") << folder.err;
-  EXPECT_GT(results.ate_m(",orb,walk,desk,"), 0.3) << "nothing tells that it has no scale";
+  EXPECT_GT(results.ate_m(",orb,walk,RGBDTUM/desk,"), 0.3) << "nothing states that it has no scale";
+  for (const char* part : {"00000_Key", "0.4 times as large", "scored as it is", "--fit-scale"})
+    EXPECT_NE(folder.err.find(part), std::string::npos) << folder.err;
+  const ProgramResult fitted = results.import(
+      "evaluation/walk", {"--truth", results.path("benchmark"), "--system", "mono", "--fit-scale"});
+  EXPECT_EQ(fitted.err.find("times as large"), std::string::npos) << fitted.err;
+  EXPECT_NEAR(results.ate_m(",mono,walk,RGBDTUM/desk,"), 0.01, 1e-3) << results.tidy();
+  EXPECT_NE(results.tidy().find("scale fitted to the ground truth"), std::string::npos);
   EXPECT_EQ(results.import("evaluation/walk/.", {"--truth", results.path("benchmark")}).exit_code, 0);
-  EXPECT_GT(results.ate_m(",walk,walk,desk,"), 0.3) << "named by its folder";
+  EXPECT_GT(results.ate_m(",walk,walk,RGBDTUM/desk,"), 0.3) << "named by its folder";
   expect_rejected(results.import("exp.yaml"), {"--results"});
   expect_rejected(results.import("evaluation/walk"), {"--truth"});
   expect_rejected(results.import("exp.yaml", {"--results", results.path("benchmark"), "--truth",
@@ -274,6 +281,53 @@ TEST(StoreImport, AnExperimentOfVslamLabHasItsFailedRunsAndNoScale) {
   expect_rejected(results.import("exp.yaml", options), {"exp.yaml", "walk.Module", "missing"});
   results.write("exp.yaml", "just a text");
   expect_rejected(results.import("exp.yaml", options), {"exp.yaml"});
+}
+
+TEST(StoreImport, RunsAreNumberedAsTheirFiles) {
+  const ResultImport results;
+  results.write("ov/truth/room.txt", spiral(kOvEval));
+  results.write("ov/algorithms/vins/room/run2.txt", spiral(kOvEval, 1.0, 0.02));
+  results.write("ov/algorithms/vins/room/run10.txt", spiral(kOvEval, 1.0, 0.1));
+  EXPECT_EQ(results.import("ov").out, "2 runs added, 0 already present\n");
+  results.write("ov/algorithms/vins/room/run1.txt", spiral(kOvEval));
+  const ProgramResult later = results.import("ov");
+  EXPECT_EQ(later.out, "1 runs added, 2 already present\n") << later.err;
+  EXPECT_NE(run_program({"store", "list", results.path("s.sqlite")}).out.find("repetition 10"),
+            std::string::npos);
+
+  results.write("lab/vslamlab_exp_log.csv", "");
+  results.write("truth/D/desk/groundtruth.csv", spiral(kVslamLab));
+  results.write("lab/D/desk/00004_KeyFrameTrajectory.csv", spiral(kVslamLab));
+  EXPECT_EQ(results.import("lab", {"--truth", results.path("truth")}).exit_code, 0);
+  EXPECT_NE(run_program({"store", "list", results.path("s.sqlite")}).out.find("repetition 5"),
+            std::string::npos);
+  results.write("lab/D/desk/best_KeyFrameTrajectory.csv", spiral(kVslamLab));
+  expect_rejected(results.import("lab", {"--truth", results.path("truth")}),
+                  {"best_Key", "NUMBER", "rename"});
+}
+
+TEST(StoreImport, SequencesWithOneNameOrOneTruthAreNotConfused) {
+  const ResultImport results;
+  results.write("lab/vslamlab_exp_log.csv", "");
+  double wobble_m = 0.0;
+  for (const char* sequence : {"A/desk", "B/desk", "B/desk_dark"}) {
+    wobble_m += 0.02;
+    results.write(fmt::format("truth/{}/groundtruth.csv", sequence), spiral(kVslamLab));
+    results.write(fmt::format("lab/{}/00000_KeyFrameTrajectory.csv", sequence),
+                  spiral(kVslamLab, 1.0, wobble_m));
+  }
+  const std::vector<std::string> options = {"--truth", results.path("truth"), "--system", "orb"};
+  EXPECT_EQ(results.import("lab", options).out, "3 runs added, 0 already present\n");
+  const ProgramResult again = results.import("lab", options);
+  EXPECT_EQ(again.out, "0 runs added, 3 already present\n") << again.err;
+  EXPECT_NEAR(results.ate_m(",orb,lab,B/desk,"), 0.02, 1e-3) << results.tidy();
+  EXPECT_NEAR(results.ate_m(",orb,lab,B/desk_dark,"), 0.03, 1e-3) << results.tidy();
+
+  results.write("exp.yaml", "lab:\n  Config: c.yaml\n  NumRuns: 1\n  Module: orb\n");
+  results.write("c.yaml", "A:\n  - desk\n  - desk\n");
+  expect_rejected(
+      results.import("exp.yaml", {"--results", results.path(""), "--truth", results.path("truth")}),
+      {"run 1 of lab on A/desk", "is there twice"});
 }
 
 TEST(StoreImport, ABrokenResultFolderAddsNothing) {

@@ -166,6 +166,7 @@ struct StoreArguments {
   bool mcap = false;
   bool numbers = false;
   bool tidy = false;
+  bool fit_scale = false;
   bool force = false;
   bool json = false;
 };
@@ -347,11 +348,15 @@ int import_from(const StoreArguments& arguments) {
     print_merge(import_results({.path = arguments.file,
                                 .results = arguments.results,
                                 .truth = arguments.truth,
-                                .system = names.system},
+                                .system = names.system,
+                                .fit_scale = arguments.fit_scale},
                                arguments.store));
     return kExitOk;
   }
-  require_unset({{"--results", arguments.results}, {"--truth", arguments.truth}}, arguments.file);
+  require_unset({{"--results", arguments.results},
+                 {"--truth", arguments.truth},
+                 {"--fit-scale", arguments.fit_scale ? "set" : ""}},
+                arguments.file);
   if (is_zip_file(arguments.file)) {
     print_merge(import_evo(arguments.file, arguments.store, names));
     return kExitOk;
@@ -453,7 +458,9 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
                        {"--sequence", "Name of evo's reference [of its path]", &arguments->names.sequence},
                        {"--results", "Evaluation folder of VSLAM-LAB, for an experiment file",
                         &arguments->results},
-                       {"--truth", "Folder of the ground truths [that of the layout]", &arguments->truth}}},
+                       {"--truth", "Folder of the ground truths [that of the layout]", &arguments->truth},
+                       {"--fit-scale", "Fit the scale to the ground truth: a folder of a monocular system",
+                        &arguments->fit_scale}}},
           arguments, import_from),
       salvage_command(arguments)};
 }

@@ -2,6 +2,8 @@
 #include "bench/cli/analysis/import/imported_runs.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -12,7 +14,8 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::string_view kRemedy = "pass another --store, or another name by --system";
+constexpr std::string_view kRemedy =
+    "pass another --store, or another name by --system (for a result of evo also by --sequence)";
 
 bool is_same_subject(const RunIdentity& a, const RunIdentity& b) {
   return a.system == b.system && a.variant == b.variant && a.sequence_id == b.sequence_id &&
@@ -65,11 +68,23 @@ std::vector<const ImportedRun*> missing_runs(const std::filesystem::path& store,
   return missing;
 }
 
+/// @throws InputError if two runs have one key
+void require_distinct(const std::vector<ImportedRun>& runs) {
+  std::set<std::string> keys;
+  for (const ImportedRun& run : runs) {
+    if (!keys.insert(run_key(run.identity)).second)
+      throw InputError(fmt::format("run {} of {} on {}", run.identity.repetition, run.identity.variant,
+                                   run.identity.sequence),
+                       "is there twice; name each sequence and file once");
+  }
+}
+
 }  // namespace
 
 RunIdentity imported_identity() { return {.build = "imported", .mode = "external"}; }
 
 MergeReport add_imported(const std::filesystem::path& store, const std::vector<ImportedRun>& runs) {
+  require_distinct(runs);
   const std::vector<const ImportedRun*> missing = missing_runs(store, runs);
   MergeReport report{.added = missing.size(), .present = runs.size() - missing.size()};
   if (missing.empty()) return report;

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <map>
+#include <optional>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "bench/cli/analysis/import/imported_runs.h"
 #include "bench/model/metrics.h"
@@ -17,6 +21,7 @@
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 #include "datasets/io/experiment_file.h"
+#include "eval/compare/conventions.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/score.h"
@@ -60,18 +65,46 @@ std::vector<fs::path> files_in(const fs::path& folder, std::string_view ending) 
   return files;
 }
 
+/// The last number in the name of a file, nullopt without one or with more than 9 digits.
+std::optional<std::int64_t> number_in(const fs::path& file) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::string name = file.stem().string();
+  const std::size_t last = name.find_last_of(kDigits);
+  if (last == std::string::npos) return std::nullopt;
+  const std::size_t before = name.find_last_not_of(kDigits, last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data() + first, name.data() + last + 1, number);
+  if (error != std::errc{} || last - first >= 9) return std::nullopt;
+  return number;
+}
+
+/// Repetitions of one system: as the files are numbered, so that a file that is added later does not change
+/// them; in the order of their names if some have no number, or two have the same one.
+std::vector<std::pair<std::int64_t, fs::path>> numbered(const std::vector<fs::path>& files) {
+  std::vector<std::pair<std::int64_t, fs::path>> by_number, by_name;
+  std::set<std::int64_t> numbers;
+  for (const fs::path& file : files) {
+    by_name.emplace_back(static_cast<std::int64_t>(by_name.size()) + 1, file);
+    if (const std::optional<std::int64_t> number = number_in(file)) {
+      by_number.emplace_back(*number, file);
+      numbers.insert(*number);
+    }
+  }
+  return numbers.size() == files.size() ? by_number : by_name;
+}
+
 std::vector<ResultFile> ov_eval_files(const ResultSource& source) {
   const fs::path beside = source.path / (fs::exists(source.path / "truths") ? "truths" : "truth");
   const fs::path truths = source.truth.empty() ? beside : source.truth;
   std::vector<ResultFile> files;
   for (const fs::path& system : folders_in(source.path / "algorithms")) {
     for (const fs::path& sequence : folders_in(system)) {
-      std::int64_t repetition = 0;
-      for (const fs::path& run : files_in(sequence, ".txt"))
+      for (const auto& [repetition, run] : numbered(files_in(sequence, ".txt")))
         files.push_back({.system = system.filename().string(),
                          .variant = system.filename().string(),
                          .sequence = sequence.filename().string(),
-                         .repetition = ++repetition,
+                         .repetition = repetition,
                          .estimate = run,
                          .truth = truths / (sequence.filename().string() + ".txt")});
     }
@@ -123,6 +156,19 @@ const fs::path& required_truth(const ResultSource& source) {
   return source.truth;
 }
 
+/// VSLAM-LAB numbers from 0 on.
+/// @throws InputError if the name of the file does not begin with a number
+std::int64_t vslam_lab_repetition(const fs::path& run) {
+  std::string number = run.filename().string();
+  number.resize(number.size() - kKeyframes.size());
+  if (number.find_first_not_of("0123456789") == std::string::npos) {
+    if (const std::optional<std::int64_t> value = number_in(number)) return *value + 1;
+  }
+  throw InputError(run.string(), fmt::format("is not named NUMBER{} as the runs of VSLAM-LAB, such as "
+                                             "00000{}; rename it",
+                                             kKeyframes, kKeyframes));
+}
+
 /// Of the folder of one experiment, without its file.
 std::vector<ResultFile> vslam_lab_files(const ResultSource& source) {
   const std::string name =
@@ -131,12 +177,11 @@ std::vector<ResultFile> vslam_lab_files(const ResultSource& source) {
   for (const fs::path& dataset : folders_in(source.path)) {
     const fs::path truths = dataset_folder(required_truth(source), dataset.filename().string());
     for (const fs::path& sequence : folders_in(dataset)) {
-      std::int64_t repetition = 0;
       for (const fs::path& run : files_in(sequence, kKeyframes))
         files.push_back({.system = source.system.empty() ? name : source.system,
                          .variant = name,
-                         .sequence = sequence.filename().string(),
-                         .repetition = ++repetition,
+                         .sequence = (truths.filename() / sequence.filename()).string(),
+                         .repetition = vslam_lab_repetition(run),
                          .estimate = run,
                          .truth = truths / sequence.filename() / "groundtruth.csv"});
     }
@@ -157,14 +202,14 @@ std::vector<ResultFile> experiment_files(const ResultSource& source) {
                            source.path.string());
     for (const datasets::ExperimentSequence& entry : experiment.sequences) {
       const fs::path runs = dataset_folder(source.results / experiment.name, entry.dataset) / entry.sequence;
-      const fs::path truth = dataset_folder(required_truth(source), entry.dataset) / entry.sequence;
+      const fs::path truths = dataset_folder(required_truth(source), entry.dataset);
       for (int run = 0; run < experiment.runs; ++run)
         files.push_back({.system = experiment.system,
                          .variant = experiment.name,
-                         .sequence = entry.sequence,
+                         .sequence = (truths.filename() / entry.sequence).string(),
                          .repetition = run + 1,
                          .estimate = runs / fmt::format("{:05}{}", run, kKeyframes),
-                         .truth = truth / "groundtruth.csv",
+                         .truth = truths / entry.sequence / "groundtruth.csv",
                          .has_scale = experiment.mode != "mono"});
     }
   }
@@ -178,6 +223,9 @@ std::vector<ResultFile> files_of(const ResultSource& source) {
     throw InputError("--system", "has no effect: the systems are named by " + source.path.string());
   if (!source.results.empty() && !is_file)
     throw InputError("--results", "has no effect without an experiment file");
+  if (source.fit_scale && is_file)
+    throw InputError("--fit-scale",
+                     "has no effect: \"mode\" of the experiments tells whether they have a scale");
   if (is_file) return experiment_files(source);
   if (fs::is_directory(source.path / "algorithms")) return ov_eval_files(source);
   return is_vslam_lab ? vslam_lab_files(source) : evalio_files(source);
@@ -204,7 +252,7 @@ class GroundTruths {
  public:
   struct Truth {
     Trajectory trajectory;
-    std::string id;  ///< hash of the file
+    std::string hash;  ///< of the file
   };
 
   /// @throws InputError if it does not exist or is malformed
@@ -215,7 +263,7 @@ class GroundTruths {
       throw InputError(file.truth.string(),
                        "does not exist; it is the ground truth of " + file.sequence + ", see --truth");
     return truths_[file.truth] = {.trajectory = eval::read_trajectory({.path = file.truth}).trajectory,
-                                  .id = "truth-" + hash_text(content_hash(eval::read_text_file(file.truth)))};
+                                  .hash = hash_text(content_hash(eval::read_text_file(file.truth)))};
   }
 
  private:
@@ -233,6 +281,13 @@ RunOutcome scored(const ResultFile& file, const Trajectory& truth) {
   if (!score.ate)
     throw InputError(file.estimate.string(),
                      "has no pose at the time of one of " + file.truth.string() + ", its ground truth");
+  if (file.has_scale && eval::find_wrong_scale(truth, estimate)) {
+    Trajectory scaled = estimate;
+    spdlog::warn(
+        "{}: the estimate is {:.3g} times as large as the ground truth, and scored as it is; if its system "
+        "has no scale (monocular), import into another store with --fit-scale",
+        file.estimate.string(), 1.0 / fit_scale(scaled, truth));
+  }
   RunOutcome outcome;
   outcome.metrics =
       measured_metrics({.scored = ScoredTrajectory{.gt = truth, .est = estimate, .score = score}});
@@ -250,13 +305,14 @@ bool is_result_source(const fs::path& path) {
 MergeReport import_results(const ResultSource& source, const fs::path& store) {
   GroundTruths truths;
   std::vector<ImportedRun> runs;
-  for (const ResultFile& file : files_of(source)) {
+  for (ResultFile& file : files_of(source)) {
+    if (source.fit_scale) file.has_scale = false;
     const GroundTruths::Truth& truth = truths.of(file);
     RunIdentity identity = imported_identity();
     identity.system = file.system;
     identity.variant = file.variant;
     identity.sequence = file.sequence;
-    identity.sequence_id = truth.id;
+    identity.sequence_id = "truth-" + hash_text(content_hash(file.sequence + "\n" + truth.hash));
     identity.config_hash = hash_text(content_hash(file.variant));
     identity.repetition = file.repetition;
     runs.push_back({std::move(identity), scored(file, truth.trajectory)});
