@@ -262,7 +262,7 @@ Cause sample_cause(const std::string& id, const std::string& name, const std::st
   return {.id = id,
           .name = name,
           .evidence = evidence,
-          .remedy = "record again with another rate or range; `--variant vo` is without IMU",
+          .remedy = "record again with another rate or range, or run without the IMU",
           .strength = strength,
           .correction = Correction{.settings = {"imu.enabled=false"}},
           .basis = CauseBasis::kShown};

@@ -223,6 +223,10 @@ TEST(DiagnoseCommand, TellsWhatDataRunAndTruthTellOfAnotherSystem) {
   const ProgramResult sound = diagnosis_of(rendered_sequence(), {key, "--store", store.string()});
   EXPECT_EQ(sound.exit_code, 0) << sound.out << sound.err;
   EXPECT_NE(sound.out.find("the given run and 0 trials"), std::string::npos) << sound.out;
+  const ProgramResult set =
+      diagnosis_of(rendered_sequence(), {key, "--store", store.string(), "--set", "imu.gyro_noise=0.01"});
+  EXPECT_EQ(set.exit_code, 2) << set.out;
+  EXPECT_NE(set.err.find("--set: has no effect"), std::string::npos) << set.err;
   const ProgramResult faulty = diagnosis_of(
       rendered_sequence(), {key, "--store", store.string(), "--fault", "blank:start=1,duration=1"});
   EXPECT_EQ(faulty.exit_code, 2) << faulty.out;

@@ -30,7 +30,7 @@ namespace stillpoint::bench {
 namespace {
 
 struct DiagnoseArguments {
-  std::string sequence, run, store, format, rig, base = "stillpoint", variant, budget = "60s";
+  std::string sequence, run, store, format, rig, base, variant, budget = "60s";
   std::vector<std::string> settings, topics, faults;
   double start_s = 0.0, length_s = 15.0;
   bool json = false, truth = false;
@@ -38,7 +38,8 @@ struct DiagnoseArguments {
 
 /// The config of the trials: without an IMU and without boxes where there are none.
 ConfigRequest config_of(const DiagnoseArguments& arguments, const datasets::SequenceInfo& info) {
-  ConfigRequest request{arguments.base, arguments.variant, arguments.settings};
+  ConfigRequest request{arguments.base.empty() ? "stillpoint" : arguments.base, arguments.variant,
+                        arguments.settings};
   if (arguments.variant.empty() && (info.imu.empty() || !info.rig.has_imu)) request.variant = "vo";
   if (info.detections.empty()) request.settings.emplace_back("detector.kind=none");
   return request;
@@ -147,11 +148,24 @@ int check_truths(const DiagnoseArguments& arguments) {
   return findings.exit_code();
 }
 
+/// @throws InputError for a config with a run of another system: trials, which use it, are left out
+void require_effect(const DiagnoseArguments& arguments) {
+  if (arguments.run.empty() || !is_foreign({arguments.run, arguments.store})) return;
+  const std::string set = arguments.settings.empty() ? "" : arguments.settings.front();
+  for (const auto& [option, value] : {std::pair<const char*, std::string>{"--config", arguments.base},
+                                      {"--variant", arguments.variant},
+                                      {"--set", set}}) {
+    if (!value.empty())
+      throw InputError(option, "has no effect on the diagnosis of a run of another system; omit it");
+  }
+}
+
 int diagnose_sequence(const DiagnoseArguments& arguments) {
   static_cast<void>(parse_duration_s(arguments.budget, "--budget"));
   install_interrupt_handlers();
   if (arguments.run.empty() && !arguments.store.empty())
     throw InputError("--store", "requires SEQ and the key of a run; see `stillpoint store list`");
+  require_effect(arguments);
   if (arguments.truth && !arguments.run.empty() && !is_foreign({arguments.run, arguments.store}))
     throw InputError("--truth",
                      "compares the ground truth with a run without IMU of its own; leave RUN out, or name "
@@ -193,7 +207,7 @@ Command diagnose_command() {
            {"--length", "Length of the part of the recording that is used [15 s]", &a->length_s, {2, 1e4}},
            {"--start", "Time after the first frame at which that part begins [0 s]", &a->start_s, {0, 1e9}},
            {"--rig", kRigHelp, &a->rig},
-           {"--config", "Base config: an embedded name or a TOML file", &a->base},
+           {"--config", "Base config: an embedded name or a TOML file [stillpoint]", &a->base},
            {"--variant", "Overlays joined by + [vo without an IMU]", &a->variant},
            {"--set", "Override a config key: key=value; may be repeated", &a->settings},
            {"--fault", "Inject a sensor fault, as `run --fault`; may be repeated", &a->faults},
