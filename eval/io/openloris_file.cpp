@@ -40,7 +40,10 @@ class OpenlorisParser {
 
   [[nodiscard]] OpenlorisFile finish(const std::string& name) {
     if (builders_.empty()) {
-      throw InputError(name, "no \"seq:\" line found; an OpenLORIS file has one before each sequence");
+      throw InputError(
+          name,
+          "has neither rows \"t tx ty tz qx qy qz qw\" nor the \"seq:\" lines of OpenLORIS; is it "
+          "a trajectory?");
     }
     for (auto& [number, builder] : builders_) {
       LoadedTrajectory loaded = builder.release();

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -118,6 +119,22 @@ std::size_t mark_length(std::string_view start, const std::string& name) {
   return start.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0;
 }
 
+/// Why bytes are no text; empty if they may be one.
+std::string problem_of_bytes(std::string_view bytes) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 5> kCompressed{
+      {{"\x1F\x8B", "gunzip"},
+       {"PK\x03\x04", "unzip"},
+       {"\xFD\x37zXZ", "unxz"},
+       {"\x28\xB5\x2F\xFD", "unzstd"},
+       {"BZh", "bunzip2"}}};
+  for (const auto& [magic, tool] : kCompressed) {
+    if (bytes.starts_with(magic))
+      return std::string("is compressed; decompress it, e.g. with `") + tool + "`";
+  }
+  if (bytes.find('\0') == std::string_view::npos) return "";
+  return "contains NUL bytes: it is binary, damaged, or UTF-16 text without its mark; expected UTF-8 text";
+}
+
 /// Whether a text contains the header of a table and a row.
 bool has_two_records(std::string_view text) {
   RowReader rows(text, "");
@@ -139,6 +156,8 @@ TextBlocks::TextBlocks(const std::filesystem::path& file) : name_(file.string())
   unread_ = opened.bytes;
   read_more();
   begin_ = mark_length(buffer_, name_);
+  if (const std::string problem = problem_of_bytes(buffer_); !problem.empty())
+    throw InputError(name_, problem);
   while (!has_two_records(block()) && unread_ > 0) read_more();
 }
 
@@ -372,9 +391,14 @@ Timestamp TextRow::time(std::size_t field, TimeUnit unit) const {
     throw error("stamp " + quoted(found) +
                 " is not an integer number of nanoseconds; is the file in seconds?");
   }
-  if (parse_number(found).value_or(0.0) > 1.0) {
-    throw error("stamp " + quoted(found) + " exceeds 292 years; is it in nanoseconds instead of seconds?");
+  if (const double number = parse_number(found).value_or(0.0); number > 1.0) {
+    const char* const unit_since_1970 = number < 1e14 ? "milli" : number < 1e17 ? "micro" : "nano";
+    throw error("stamp " + quoted(found) + " exceeds 292 years; is it in " + unit_since_1970 +
+                "seconds? convert it to seconds");
   }
+  if (found.starts_with('"'))
+    throw error("stamp " + std::string(found) +
+                " is in quotation marks; remove them, e.g. with `tr -d '\"'`");
   throw error("stamp " + quoted(found) + " is not a number of seconds");
 }
 
@@ -391,9 +415,13 @@ InputError TextRow::error(const std::string& problem) const { return {std::strin
 
 std::optional<TextRow> RowReader::next() {
   while (const std::optional<std::string_view> line = lines_.next()) {
+    if (!file_.empty()) {  // where the format is detected, the name is not known
+      if (const std::string problem = problem_of_bytes(*line); !problem.empty())
+        throw InputError(std::string(file_), lines_.line_number(), problem);
+    }
     const std::size_t begin = line->find_first_not_of(kSeparators);
     if (begin == std::string_view::npos || (*line)[begin] == '#') continue;
-    if (!file_.empty() && has_inner_return(*line)) {  // where the format is detected, the name is not known
+    if (!file_.empty() && has_inner_return(*line)) {
       throw InputError(std::string(file_), lines_.line_number(),
                        "lines end with carriage returns only; convert them, e.g. with `tr '\\r' '\\n'`");
     }

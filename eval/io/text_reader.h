@@ -30,7 +30,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 class TextBlocks {
  public:
   /// Reads the first block: at least two records (a header and a row), or the whole file.
-  /// @throws InputError as `read_text_file`
+  /// @throws InputError as `read_text_file`, or if the file is binary or compressed
   explicit TextBlocks(const std::filesystem::path& file);
 
   /// The current block, which `advance` invalidates; empty behind the end of the file.
@@ -120,7 +120,7 @@ class RowReader {
   RowReader(TextBlocks& blocks, std::string_view file) : lines_(blocks), file_(file) {}
 
   /// The next record; nullopt after the last one.
-  /// @throws InputError if lines end with carriage returns only
+  /// @throws InputError if lines end with carriage returns only, or the file is binary or compressed
   [[nodiscard]] std::optional<TextRow> next();
 
  private:

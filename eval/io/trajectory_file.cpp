@@ -140,6 +140,14 @@ constexpr RowFormat kTum{TimeUnit::kSeconds, QuaternionOrder::kXyzw, "t tx ty tz
 constexpr RowFormat kEuroc{TimeUnit::kNanoseconds, QuaternionOrder::kWxyz, "ns,px,py,pz,qw,qx,qy,qz"};
 constexpr RowFormat kOrbSlam3{TimeUnit::kNanoseconds, QuaternionOrder::kXyzw, "ns tx ty tz qx qy qz qw"};
 
+/// Of rows with stamps in nanoseconds: without names of the columns, the separator tells which program wrote
+/// them.
+const RowFormat& nanosecond_format(std::string_view text, const std::string& name) {
+  RowReader rows(text, name);
+  const std::optional<TextRow> first = rows.next();
+  return first && first->content.find(',') != std::string_view::npos ? kEuroc : kOrbSlam3;
+}
+
 /// A text, or the first records of one, and the name of its file.
 struct NamedText {
   std::string_view text;
@@ -203,6 +211,26 @@ struct RowRules {
   PoseCheck check = PoseCheck::kEstimate;
 };
 
+/// Rows of a matrix, with or without the stamp and the last row 0 0 0 1, may look like a pose: [1 0 0 | x]
+/// would be read as a position, and the quaternion after it has norm 1 for a small x.
+/// @throws InputError if the numbers of a row without names are those of a rigid transformation
+void require_no_matrix(const TextRow& row) {
+  constexpr double kTolerance = 1e-3;
+  const std::size_t count = row.fields.size();
+  if (count != 13 && count != 16 && count != 17) return;
+  const std::size_t first = count == 16 ? 0 : 1;
+  Eigen::Matrix3d R;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j)
+      R(i, j) = parse_number(row.fields[first + static_cast<std::size_t>(4 * i + j)]).value_or(2.0);
+  }
+  if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance) return;
+  throw row.error(
+      "has " + std::to_string(count) +
+      " numbers, which are a matrix; write rows \"t tx ty tz qx qy qz qw\", or the first three rows "
+      "of each matrix as 12 numbers (KITTI) and the stamps in another file (--times)");
+}
+
 /// @param start the first records, by which the layout is found
 /// @param all the records of the whole file
 LoadedTrajectory parse_rows(const NamedText& start, RowReader all, const RowRules& rules, FaultLog& faults) {
@@ -214,6 +242,7 @@ LoadedTrajectory parse_rows(const NamedText& start, RowReader all, const RowRule
       throw row.error("a pose needs 8 numbers, found " + std::to_string(row.fields.size()) + "; expected \"" +
                       rules.format.columns + "\"");
     }
+    if (!layout.is_named && builder.is_empty()) require_no_matrix(row);
     const Timestamp t = row.time(layout.time, layout.unit);
     builder.add(row, t, parse_pose(row, layout.pose, rules.check));
   });
@@ -267,7 +296,7 @@ LoadedTrajectory parse_tum(std::string_view text, const std::string& name, const
 
 LoadedTrajectory parse_euroc(std::string_view text, const std::string& name) {
   FaultLog strict;
-  return parse_text({text, name}, {kEuroc}, strict);
+  return parse_text({text, name}, {nanosecond_format(text, name)}, strict);
 }
 
 LoadedTrajectory read_tum_ground_truth(const std::filesystem::path& file, const std::string& frame,
@@ -394,14 +423,10 @@ void require_plausible_nanoseconds(const LoadedTrajectory& loaded, const std::st
   throw InputError(name, text);
 }
 
-/// Rows with stamps in nanoseconds that were recognized by these. Without names of the columns, the separator
-/// tells which program wrote them.
+/// Rows with stamps in nanoseconds that were recognized by these.
 LoadedTrajectory parse_detected_nanoseconds(TextBlocks& file, const std::string& name) {
-  RowReader rows(file.block(), name);
-  const std::optional<TextRow> first = rows.next();
-  const bool has_commas = first && first->content.find(',') != std::string_view::npos;
   FaultLog strict;
-  LoadedTrajectory loaded = parse_file(file, name, {has_commas ? kEuroc : kOrbSlam3}, strict);
+  LoadedTrajectory loaded = parse_file(file, name, {nanosecond_format(file.block(), name)}, strict);
   require_plausible_nanoseconds(loaded, name);
   if (loaded.order_source == OrderSource::kFormat) loaded.order_source = OrderSource::kAssumed;
   return loaded;

@@ -164,6 +164,8 @@ class TrajectoryBuilder {
   /// @throws InputError if it is even earlier
   void add(const TextRow& row, Timestamp t, const std::optional<Pose>& pose);
 
+  [[nodiscard]] bool is_empty() const { return loaded_.trajectory.poses.empty(); }
+
   /// @param file its name, for messages
   /// @throws InputError if no pose was added
   void require_poses(const std::string& file) const;

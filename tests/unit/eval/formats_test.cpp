@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "eval/io/matrix_files.h"
@@ -34,6 +35,26 @@ TEST(Formats, AreReadBackAsWritten) {
   expect_same(parse_kitti(kitti.poses, "a", kitti.times, "b").trajectory, kPath);
   const OpenlorisFile file{.scene = "home", .frame = "d400_color", .sequences = {{3, kPath}}};
   expect_same(parse_openloris(format_openloris(file), "a").sequences.at(3), kPath);
+}
+
+TEST(Formats, NameWhatIsNoTrajectory) {
+  const TemporaryFolder folder;
+  const std::string wide_text("1\0.\0\x35\0\n\0", 8);
+  const std::vector<std::tuple<const char*, std::string, const char*>> files = {
+      {"a.gz", "\x1F\x8B\x08", "a.gz: is compressed; decompress it, e.g. with `gunzip`"},
+      {"a.xlsx", "PK\x03\x04", "a.xlsx: is compressed"},
+      {"wide.txt", wide_text, "wide.txt: contains NUL bytes"},
+      {"text.csv", "a sentence: no poses\n", "is it a trajectory?"},
+      {"ms.txt", "1700000000000 0 0 0 0 0 0 1\n", "is it in milliseconds? convert it to seconds"},
+      {"us.txt", "170000000000000 0 0 0 0 0 0 1\n", "is it in microseconds? convert it to seconds"},
+      {"quoted.txt", "\"1.5\" 0 0 0 0 0 0 1\n", "is in quotation marks; remove them"},
+      {"matrix13.txt", "1.5 1 0 0 .1 0 1 0 .2 0 0 1 .3\n", "has 13 numbers, which are a matrix"},
+      {"matrix16.txt", "1 0 0 .1 0 1 0 .01 0 0 1 .3 0 0 0 1\n", "has 16 numbers, which are a matrix"},
+      {"matrix17.txt", "1.5 1 0 0 .1 0 1 0 .2 0 0 1 .3 0 0 0 1\n", "has 17 numbers, which are a matrix"}};
+  for (const auto& [name, text, problem] : files) {
+    const auto file = folder.write(name, text);
+    expect_input_error([&] { static_cast<void>(read_trajectory({.path = file})); }, {problem});
+  }
 }
 
 TEST(Formats, SkipAByteOrderMarkAndNameUtf16) {

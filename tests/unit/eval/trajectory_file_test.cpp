@@ -77,9 +77,9 @@ TEST(ParseTum, ReportsTheLineOfAMalformedRow) {
   EXPECT_EQ(message_of(good + "2 0 0 0 0 0 1\n"),
             "a.txt:2: a pose needs 8 numbers, found 7; expected \"t tx ty tz qx qy qz qw\"");
   EXPECT_EQ(message_of(good + "2 0 x 0 0 0 0 1\n"), "a.txt:2: \"x\" is not a number");
-  EXPECT_EQ(
-      message_of("1403636579763555584 0 0 0 0 0 0 1\n"),
-      "a.txt:1: stamp \"1403636579763555584\" exceeds 292 years; is it in nanoseconds instead of seconds?");
+  EXPECT_EQ(message_of("1403636579763555584 0 0 0 0 0 0 1\n"),
+            "a.txt:1: stamp \"1403636579763555584\" exceeds 292 years; is it in nanoseconds? convert it to "
+            "seconds");
   EXPECT_EQ(message_of("# nothing\n"), "a.txt: no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
 }
 
