@@ -24,9 +24,7 @@ constexpr int kBlockPixels = 16;
 std::vector<PlanePoint> web_mercator(const std::string& crs, std::vector<PlanePoint> points) {
   ProjectedPoints projected = projection_module().to_web_mercator(crs, std::move(points));
   if (projected.problem.empty()) return std::move(projected.points);
-  throw InputError(
-      "--map-crs " + crs,
-      projected.problem + "; it must be that of the ground truth, whose x is east and y north [m]");
+  throw InputError("--map-crs " + crs, projected.problem);
 }
 
 /// Places of the centers of blocks as fractions of the world, from the west and from the north, row by row; a

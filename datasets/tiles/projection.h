@@ -16,7 +16,7 @@ struct PlanePoint {
 
 struct ProjectedPoints {
   std::vector<PlanePoint> points;
-  std::string problem;  ///< why there are no points; empty if there are
+  std::string problem;  ///< why there are no points, and the remedy; empty if there are
 };
 
 struct ProjectionModule {

@@ -69,41 +69,40 @@ std::string area_problem(PJ_CONTEXT* context, const PJ* crs, const std::vector<P
       first.y, first.x, south, north, west, east);
 }
 
+ProjectedPoints refused(const std::string& problem) {
+  return {{}, problem + "; it must be that of the ground truth, whose x is east and y north [m]"};
+}
+
 ProjectedPoints to_web_mercator(const std::string& crs, std::vector<PlanePoint> points) {
   const Context context(proj_context_create(), &proj_context_destroy);
-  proj_log_level(context.get(), PJ_LOG_NONE);
+  proj_log_func(context.get(), nullptr, [](void*, int, const char*) {});
   proj_context_set_enable_network(context.get(), 0);
+  const Object target = object(proj_create(context.get(), "EPSG:3857"));
+  if (target == nullptr)
+    return {{}, "cannot be used: PROJ does not find its database proj.db (Debian: proj-data); set PROJ_DATA"};
   const bool is_bare_string =
       crs.find("+proj") != std::string::npos && crs.find("+type") == std::string::npos;
   const Object source =
       object(proj_create(context.get(), (is_bare_string ? crs + " +type=crs" : crs).c_str()));
-  if (source == nullptr || proj_is_crs(source.get()) == 0) {
-    const int code = proj_context_errno(context.get());
-    return {{},
-            std::string("is no CRS that PROJ knows") +
-                (code == 0 ? "" : std::string(" (") + proj_context_errno_string(context.get(), code) + ")")};
-  }
-  if (!is_plane_in_meters(context.get(), source.get())) return {{}, "is no plane in meters"};
-  const Object target = object(proj_create(context.get(), "EPSG:3857"));
-  Object there = object(target == nullptr ? nullptr
-                                          : proj_create_crs_to_crs_from_pj(context.get(), source.get(),
-                                                                           target.get(), nullptr, nullptr));
+  if (source == nullptr || proj_is_crs(source.get()) == 0) return refused("is no CRS that PROJ knows");
+  if (!is_plane_in_meters(context.get(), source.get())) return refused("is no plane in meters");
+  Object there =
+      object(proj_create_crs_to_crs_from_pj(context.get(), source.get(), target.get(), nullptr, nullptr));
   if (there != nullptr) there = object(proj_normalize_for_visualization(context.get(), there.get()));
-  if (there == nullptr) return {{}, "cannot be converted to Web Mercator (EPSG:3857) by PROJ"};
+  if (there == nullptr) return refused("cannot be converted to Web Mercator (EPSG:3857) by PROJ");
   for (PlanePoint& point : points) {
     const PJ_COORD at = proj_trans(there.get(), PJ_FWD, proj_coord(point.x, point.y, 0.0, HUGE_VAL));
     const PJ_COORD back = proj_trans(there.get(), PJ_INV, at);
     // Beyond the ends of a projection there is none, or one that belongs to another place of the plane.
     constexpr double kSamePlace_m = 1.0;
     if (!(std::hypot(back.xy.x - point.x, back.xy.y - point.y) < kSamePlace_m)) {
-      return {{},
-              fmt::format("has no place at x = {:.1f} m and y = {:.1f} m, near the trajectory", point.x,
-                          point.y)};
+      return refused(fmt::format("has no place at x = {:.1f} m and y = {:.1f} m, near the trajectory",
+                                 point.x, point.y));
     }
     point = {at.xy.x, at.xy.y};
   }
-  std::string problem = area_problem(context.get(), source.get(), points);
-  return {std::move(points), std::move(problem)};
+  const std::string problem = area_problem(context.get(), source.get(), points);
+  return problem.empty() ? ProjectedPoints{std::move(points), ""} : refused(problem);
 }
 
 }  // namespace
