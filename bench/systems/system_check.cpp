@@ -25,6 +25,7 @@
 #include "eval/io/text_reader.h"
 #include "eval/score.h"
 #include "eval/trajectory/alignment.h"
+#include "eval/trajectory/orientations.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -124,19 +125,26 @@ FileStates files_of(const std::vector<WatchedFolder>& folders, bool is_shared, c
   return states;
 }
 
-std::vector<fs::path> changed_files(const FileStates& before, const FileStates& after) {
+/// New and changed files.
+std::vector<fs::path> written_files(const FileStates& before, const FileStates& after) {
   std::vector<fs::path> changed;
   for (const auto& [path, state] : after) {
     const auto known = before.find(path);
     if (known == before.end() || known->second != state) changed.push_back(path);
   }
+  return changed;
+}
+
+/// New, changed and removed files.
+std::vector<fs::path> changed_files(const FileStates& before, const FileStates& after) {
+  std::vector<fs::path> changed = written_files(before, after);
   for (const auto& [path, state] : before) {
     if (!after.contains(path)) changed.push_back(path);
   }
   return changed;
 }
 
-/// Files that a running process has open: those of other programs, as the system has ended.
+/// Files that a running process has open: those of other programs, as the system does not run.
 std::set<fs::path> open_files() {
   std::set<fs::path> files;
   std::error_code error;
@@ -189,11 +197,12 @@ Trial try_system(const ExternalSystem& system, const RunRequest& request, const 
       watched_folders(system, exported_sequence(spec, request), options.folder);
   const FileStates own = files_of(folders, false, out);
   const FileStates shared = files_of(folders, true, out);
+  std::set<fs::path> others = open_files();
   Trial trial{.process = run_process(spec), .outside = {}, .shared = {}};
   trial.outside = changed_files(own, files_of(folders, false, out));
-  trial.shared = changed_files(shared, files_of(folders, true, out));
+  trial.shared = written_files(shared, files_of(folders, true, out));
   if (!trial.shared.empty()) {
-    const std::set<fs::path> others = open_files();
+    others.merge(open_files());
     std::erase_if(trial.shared, [&](const fs::path& file) { return others.contains(file); });
   }
   eval::write_text_file(options.folder / "program.log", trial.process.messages);
@@ -253,8 +262,11 @@ std::string exit_finding(const ProcessResult& end) {
   const std::string last = last_line(end.messages);
   if (last.find("error while loading shared libraries") != std::string::npos)
     return last + "; add environment = [\"LD_LIBRARY_PATH=...\"]";
-  return fmt::format("exited with code {}{}{}; correct the arguments in command, or make it exit with 0",
-                     end.exit_code, last.empty() ? "" : ": ", last);
+  const bool misses_file = last.find("No such file") != std::string::npos;
+  return fmt::format("exited with code {}{}{}; {}", end.exit_code, last.empty() ? "" : ": ", last,
+                     misses_file ? "paths are relative to {out}: name files beside the description by "
+                                   "{here}/FILE, or set working_folder"
+                                 : "correct the arguments in command, or make it exit with 0");
 }
 
 std::string outside_finding(const std::vector<fs::path>& files) {
@@ -320,7 +332,7 @@ std::vector<std::string> fields_of_line(std::string line) {
   return fields;
 }
 
-std::string written_files(const fs::path& work) {
+std::string files_in_output(const fs::path& work) {
   std::vector<std::string> names;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(work, ignored)) {
@@ -332,11 +344,18 @@ std::string written_files(const fs::path& work) {
                        : fmt::format("but {}; set trajectory to the file", fmt::join(names, ", "));
 }
 
+/// @param messages of the program, which may have printed an error and ended with 0
+std::string missing_file_finding(const ExternalSystem& system, const fs::path& work,
+                                 const std::string& messages) {
+  const std::string last = last_line(messages);
+  return fmt::format("wrote no {} in {{out}}, {}{}", system.trajectory, files_in_output(work),
+                     last.empty() ? "" : fmt::format("; it printed last: {}", last));
+}
+
 /// Faults of the rows that a reader would reject or skip.
-std::string text_finding(const ExternalSystem& system, const fs::path& work) {
+std::string text_finding(const ExternalSystem& system, const fs::path& work, const std::string& messages) {
   const fs::path file = work / system.trajectory;
-  if (!fs::exists(file))
-    return fmt::format("wrote no {} in {{out}}, {}", system.trajectory, written_files(work));
+  if (!fs::exists(file)) return missing_file_finding(system, work, messages);
   const std::string text = eval::read_text_file(file);
   std::vector<std::string> lines = lines_of(text);
   std::erase_if(lines, [](const std::string& line) { return line.empty() || line.front() == '#'; });
@@ -476,9 +495,30 @@ std::string rate_finding(const SmokeTruth& truth, const Trajectory& estimate, do
       100.0 * coverage, seconds_between(truth.frames.front(), estimate.poses.front().t));
 }
 
+/// For a trajectory that cannot be read: the format that its rows have, if that is another one.
+std::string format_remedy(const ExternalSystem& system, const fs::path& work) {
+  constexpr std::size_t kNanosecondDigits = 18, kMatrixColumns = 12;
+  for (const std::string& line : lines_of(eval::read_text_file(work / system.trajectory))) {
+    const std::vector<std::string> fields = fields_of_line(line);
+    if (fields.empty() || fields.front().find_first_not_of("0123456789.") != std::string::npos) continue;
+    const std::size_t digits = std::min(fields.front().find('.'), fields.front().size());
+    if (digits >= kNanosecondDigits && system.trajectory_format != OutputFormat::kEuroc)
+      return "set trajectory_format = \"euroc\"";
+    if (fields.size() == kMatrixColumns && system.trajectory_format != OutputFormat::kKitti)
+      return "set trajectory_format = \"kitti\"";
+    break;
+  }
+  return "set trajectory_format, or write rows \"t x y z qx qy qz qw\"";
+}
+
 SystemCheck trajectory_check(const ExternalSystem& system, const RunRequest& request,
                              const ProcessResult& process) {
-  if (std::string finding = text_finding(system, request.work); !finding.empty()) return {finding, ""};
+  try {
+    if (std::string finding = text_finding(system, request.work, process.messages); !finding.empty())
+      return {finding, ""};
+  } catch (const InputError& error) {  // a folder, or no text
+    return {error.what(), ""};
+  }
   const std::unique_ptr<datasets::SensorStream> stream = played_sequence(request);
   const datasets::SequenceInfo& info = stream->info();
   const SmokeTruth truth{
@@ -489,8 +529,7 @@ SystemCheck trajectory_check(const ExternalSystem& system, const RunRequest& req
   try {
     estimate = read_output(system, request.work, info).trajectory;
   } catch (const InputError& error) {
-    return {fmt::format("{}; set trajectory_format, or write rows \"t x y z qx qy qz qw\"", error.what()),
-            ""};
+    return {fmt::format("{}; {}", error.what(), format_remedy(system, request.work)), ""};
   }
   if (estimate.poses.size() < 2)
     return {system.trajectory + " has one pose only; write a pose for each image", ""};
@@ -506,6 +545,8 @@ SystemCheck trajectory_check(const ExternalSystem& system, const RunRequest& req
   const eval::Score score = eval::score(truth.gt, estimate, options);
   if (std::string finding = rate_finding(truth, estimate, score.coverage.value_or(0.0)); !finding.empty())
     return {finding, ""};
+  if (const std::string missing = eval::missing_orientations(truth.gt, estimate); !missing.empty())
+    return {fmt::format("{}; write the orientation of the camera with each pose", missing), ""};
   const double length_m = path_length(truth.gt);
   const double ate_m = score.ate ? score.ate->translation_m.rmse : length_m;
   if (ate_m > kMaxRelativeError * spread_of(truth.gt)) {

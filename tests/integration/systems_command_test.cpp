@@ -137,6 +137,18 @@ TEST(SystemsCheck, NamesAProgramThatWritesNothing) {
   expect_finding(FakeSystem(replay("good") + "mv \"$2/trajectory.tum\" \"$2/poses.txt\"\n").check(),
                  {"wrote no trajectory.tum", "poses.txt; set trajectory"});
   expect_finding(FakeSystem(": >\"$2/trajectory.tum\"\n").check(), {"trajectory.tum has no poses"});
+  expect_finding(FakeSystem("mkdir \"$2/trajectory.tum\"\n").check(), {"is a folder"});
+  expect_finding(FakeSystem("echo ERROR: no vocabulary\n").check(),
+                 {"it printed last: ERROR: no vocabulary"});
+  expect_finding(FakeSystem("cat config.yaml\n").check(), {"No such file", "{here}/FILE"});
+}
+
+TEST(SystemsCheck, NamesEqualOrientations) {
+  const std::string constant =
+      "awk '{ print $1, $2, $3, $4, 0, 0, 0, 1 }' \"$2/trajectory.tum\" >\"$2/t\"\n"
+      "mv \"$2/t\" \"$2/trajectory.tum\"\n";
+  expect_finding(FakeSystem(replay("good") + constant).check(),
+                 {"all orientations of the estimate are equal", "write the orientation"});
 }
 
 TEST(SystemsCheck, NamesHalfALine) {
@@ -166,7 +178,9 @@ TEST(SystemsCheck, NamesALowRate) {
 TEST(SystemsCheck, NamesWrongStamps) {
   expect_finding(FakeSystem(replay("offset")).check(), {"time offset of -0.1", "stamps of the images"});
   expect_finding(FakeSystem(replay("index")).check(), {"do not overlap in time", "stamps of the images"});
-  expect_finding(FakeSystem(replay("nanoseconds")).check(), {"stamp"});
+  expect_finding(FakeSystem(replay("nanoseconds")).check(), {"stamp", "set trajectory_format = \"euroc\""});
+  EXPECT_EQ(FakeSystem(replay("nanoseconds"), "trajectory_format = \"euroc\"\n").check().exit_code, 0)
+      << "qx first, as the separator is a blank";
 }
 
 TEST(SystemsCheck, NamesPosesThatDoNotFollowTheMotion) {
@@ -207,6 +221,11 @@ TEST(SystemsCheck, NamesAProgramThatWritesOutsideOfItsFolder) {
     const FakeSystem fake(replay("good") + "date +%N >\"$TMPDIR/" + name + "\"\n");
     expect_finding(fake.check({}, {"TMPDIR=" + shared.path().string()}), {"/slam_"});
   }
+  const TemporaryFolder cleaned;  // as by a compiler, whose files end while the system runs
+  for (const char* name : {"cc1.s", "cc2.s"}) cleaned.write(name, "");
+  const FakeSystem fake(replay("good") + "rm \"$(ls \"$TMPDIR\"/cc* | head -1)\"\n");
+  const ProgramResult removed = fake.check({}, {"TMPDIR=" + cleaned.path().string()});
+  EXPECT_EQ(removed.exit_code, 0) << removed.out;
 }
 
 TEST(SystemsCommand, NewWritesADescriptionThatCheckReads) {
