@@ -243,7 +243,14 @@ TEST(ExternalSystem, AStoredRunIsRepeatedWithItsDescription) {
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
   EXPECT_NE(result.out.find("equal trajectories; ATE 0.007"), std::string::npos) << result.out;
   fs::remove_all(folder.path() / "cache");
-  EXPECT_EQ(run_here(folder, {"reproduce", "0123456789", "--store", store_of(folder)}).exit_code, 2);
+  const ProgramResult unknown = run_here(folder, {"reproduce", "0123456789", "--store", store_of(folder)});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("store list"), std::string::npos) << unknown.err;
+  fs::remove(folder.path() / "replay.toml");
+  const ProgramResult missing = run_here(folder, command);
+  EXPECT_EQ(missing.exit_code, 2) << missing.out;
+  for (const char* part : {"cannot be repeated", "must exist where they were", "replay.toml"})
+    EXPECT_NE(missing.err.find(part), std::string::npos) << missing.err;
 }
 
 TEST(ExternalSystem, ARunIsProfiled) {

@@ -165,6 +165,20 @@ ExternalSystem stored_system(const Store& store, const StoredRun& run) {
   return stored;
 }
 
+/// The runs of the plan of a stored run.
+/// @throws InputError if a file that it names, such as a description, is missing or invalid
+PlanMatrix expanded_again(const fs::path& plan, const StoredRun& run) {
+  try {
+    return expand_plan(load_plan(plan.string()), build_name(), {});
+  } catch (const InputError& error) {
+    throw InputError(
+        "run " + run.key,
+        fmt::format("cannot be repeated: the files that its plan names, such as descriptions, must "
+                    "exist where they were, and be valid: {}",
+                    error.what()));
+  }
+}
+
 /// The stored run as a plan of one run.
 /// @param folder receives the text of its plan
 PlanMatrix matrix_of_run(const Store& store, const StoredRun& run, const fs::path& folder) {
@@ -172,7 +186,7 @@ PlanMatrix matrix_of_run(const Store& store, const StoredRun& run, const fs::pat
   for (const StoredPlan& plan : store.plans()) {
     if (std::ranges::find(plan.run_keys, run.key) == plan.run_keys.end()) continue;
     write_files(folder, {{plan.name + ".toml", plan.text}});
-    PlanMatrix matrix = expand_plan(load_plan((folder / (plan.name + ".toml")).string()), build_name(), {});
+    PlanMatrix matrix = expanded_again(folder / (plan.name + ".toml"), run);
     std::erase_if(matrix.runs, [&](PlannedRun& planned) {
       if (!is_own && planned.identity.variant == run.identity.variant) {
         planned.identity.build = run.identity.build;
@@ -246,7 +260,9 @@ std::vector<Target> select_targets(const std::string& name) {
     if (name == "all" || name == target.name) targets.push_back(target);
     known += std::string(target.name) + ", ";
   }
-  if (targets.empty()) throw InputError("unknown target \"" + name + "\"; expected one of: " + known + "all");
+  if (targets.empty())
+    throw InputError("unknown target \"" + name + "\"; expected one of: " + known +
+                     "all, or the key of a run in the store (`stillpoint store list`)");
   return targets;
 }
 
