@@ -31,4 +31,12 @@ FileLock::FileLock(const std::filesystem::path& file, LockKind kind)
 
 FileLock::~FileLock() { close(descriptor_); }
 
+bool is_locked(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool is_free = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  close(descriptor);
+  return !is_free;
+}
+
 }  // namespace stillpoint::bench

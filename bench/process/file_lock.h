@@ -25,4 +25,7 @@ class FileLock {
   int descriptor_ = -1;
 };
 
+/// Whether a process, this one included, holds a lock on a file now.
+[[nodiscard]] bool is_locked(const std::filesystem::path& file);
+
 }  // namespace stillpoint::bench

@@ -124,14 +124,17 @@ SourceBuild SourceBuilds::build(const SourceCommit& commit) const {
   const FileLock lock(folder_ / "lock", LockKind::kExclusive);
   const fs::path tree = folder_ / commit.hash;
   const fs::path mark = folder_ / (commit.hash + ".built");
-  SourceBuild build{.tree = tree, .program = tree / source_.binary, .failure = {}};
+  SourceBuild build{.tree = tree, .program = tree / source_.binary, .failure = {}, .use = nullptr};
   build.cached = fs::exists(mark) && fs::exists(build.program);
   if (!build.cached) {
     fs::remove(mark);
     add_tree(commit, tree);
   }
   fs::last_write_time(tree, fs::file_time_type::clock::now());  // the order of `keep_latest`
-  if (build.cached) return build;
+  if (build.cached) {
+    build.use = std::make_shared<const FileLock>(mark, LockKind::kShared);
+    return build;
+  }
   ProcessSpec spec{.program = source_.build.front(), .folder = tree, .output_in_messages = true};
   spec.arguments.assign(source_.build.begin() + 1, source_.build.end());
   if (spec.program.string().find('/') != std::string::npos) spec.program = tree / spec.program;
@@ -146,25 +149,30 @@ SourceBuild SourceBuilds::build(const SourceCommit& commit) const {
     build.failure = "the build wrote no " + source_.binary + "; correct source.binary; see " + log.string();
   } else {
     eval::write_text_file(mark, "");
+    build.use = std::make_shared<const FileLock>(mark, LockKind::kShared);
   }
   return build;
 }
 
 std::size_t SourceBuilds::keep_latest(std::size_t count) const {
   const FileLock lock(folder_ / "lock", LockKind::kExclusive);
-  std::vector<fs::path> trees;
+  const auto with_ending = [](fs::path tree, const char* ending) { return tree.concat(ending); };
+  std::vector<fs::path> removed, built;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-    if (entry.is_directory()) trees.push_back(entry.path());
+    if (!entry.is_directory()) continue;
+    (fs::exists(with_ending(entry.path(), ".built")) ? built : removed).push_back(entry.path());
   }
-  std::ranges::sort(trees, std::ranges::greater{},
+  std::ranges::sort(built, std::ranges::greater{},
                     [](const fs::path& tree) { return fs::last_write_time(tree); });
-  if (trees.size() <= count) return 0;
-  for (std::size_t i = count; i < trees.size(); ++i) {
-    fs::remove(fs::path(trees[i]).concat(".built"));
-    fs::remove_all(trees[i]);
+  for (std::size_t i = count; i < built.size(); ++i) {
+    if (is_locked(with_ending(built[i], ".built"))) continue;
+    fs::remove(with_ending(built[i], ".built"));
+    fs::remove(with_ending(built[i], ".log"));
+    removed.push_back(built[i]);
   }
-  static_cast<void>(git({"worktree", "prune"}));
-  return trees.size() - count;
+  for (const fs::path& tree : removed) fs::remove_all(tree);
+  if (!removed.empty()) static_cast<void>(git({"worktree", "prune"}));
+  return removed.size();
 }
 
 ExternalSystem built_system(ExternalSystem system, const SourceCommit& commit, const SourceBuild& build) {

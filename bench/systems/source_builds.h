@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "bench/process/file_lock.h"
 #include "bench/systems/external_system.h"
 
 namespace stillpoint::bench {
@@ -28,6 +30,8 @@ struct SourceBuild {
   std::filesystem::path program;  ///< in `tree`
   bool cached = false;            ///< it existed before
   std::string failure;            ///< why there is no program, one line; empty if there is one
+  /// Keeps `keep_latest` of all processes from removing it; null if `failure` is not empty.
+  std::shared_ptr<const FileLock> use;
 };
 
 /// How this odometry is built.
@@ -66,9 +70,9 @@ class SourceBuilds {
   /// build printed last is in HASH.log in the folder of the builds.
   [[nodiscard]] SourceBuild build(const SourceCommit& commit) const;
 
-  /// Removes the work trees and builds of this source but for those that `build` was called for last. Their
-  /// programs must not be in use.
-  /// @return number of the removed ones
+  /// Removes the builds of this source, with their logs, but for those that `build` was called for last and
+  /// those in use; of failed builds, only the logs are kept.
+  /// @return number of the removed work trees
   std::size_t keep_latest(std::size_t count) const;
 
  private:
