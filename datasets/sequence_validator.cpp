@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -91,6 +92,20 @@ std::vector<Timestamp> stamps(const std::vector<Sample>& samples) {
   return times;
 }
 
+/// A rate at which the motion between two samples is lost.
+std::optional<std::string> rate_finding(const std::vector<ImuSample>& samples) {
+  constexpr double kLeastRate_hz = 50.0;
+  constexpr std::size_t kLeastSamples = 20;
+  if (samples.size() < kLeastSamples) return std::nullopt;
+  const double rate_hz =
+      static_cast<double>(samples.size() - 1) / seconds_between(samples.front().t, samples.back().t);
+  if (rate_hz >= kLeastRate_hz) return std::nullopt;
+  return fmt::format(
+      "sampled at {:.3g} Hz, too slowly for the motion between samples; record at 100 Hz or more, or run "
+      "without the IMU (--variant vo)",
+      rate_hz);
+}
+
 CheckReport check_imu(const SequenceInfo& info) {
   CheckReport report;
   if (info.imu.empty()) return report;
@@ -102,6 +117,7 @@ CheckReport check_imu(const SequenceInfo& info) {
         warning("imu", fmt::format("does not cover {} of {} images", outside, info.frame_times.size())));
   }
   if (const auto finding = gravity_finding(info)) report.findings.push_back(warning("imu", *finding));
+  if (const auto finding = rate_finding(info.imu)) report.findings.push_back(warning("imu", *finding));
   return report;
 }
 

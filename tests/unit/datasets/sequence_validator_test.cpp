@@ -127,6 +127,22 @@ TEST(SequenceValidator, ReportsValuesThatNoSensorMeasures) {
   EXPECT_EQ(report.exit_code(), 1);
 }
 
+TEST(SequenceValidator, WarnsAboutALowRateOfTheImu) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  for (const double rate_hz : {20.0, 100.0}) {
+    std::string rates, accelerations;
+    for (int i = 0; i <= 40; ++i) {
+      const std::string stamp = std::to_string(99.5 + i / rate_hz);
+      rates += stamp + " 0 0 0\n";
+      accelerations += stamp + " 0 -9.8 0\n";
+    }
+    folder.write("d400_gyroscope.txt", rates);
+    folder.write("d400_accelerometer.txt", accelerations);
+    EXPECT_EQ(count(check_sequence(folder.path()), "imu", "sampled at 20 Hz"), rate_hz < 50.0 ? 1U : 0U);
+  }
+}
+
 TEST(SequenceValidator, ReportsAGapOfOneInertialSensor) {
   const TemporaryFolder folder;
   write_valid_sequence(folder);
