@@ -129,7 +129,7 @@ row reports/tables $stored bench/config eval/metrics eval/statistics bench/syste
 row reports/drawing core/base core/geometry core/types datasets/io eval/io eval/metrics eval/openloris eval/protocols eval/statistics eval/trajectory bench/run bench/record \
   reports/tables
 row reports/drawing/evaluation core/base core/geometry core/types datasets/mapping eval/io eval/metrics eval/protocols eval/trajectory reports/drawing
-row reports/frames core/base core/types core/pipeline/runners bench/model bench/store bench/run datasets datasets/bags datasets/foxglove datasets/io eval/metrics eval/trajectory
+row reports/frames core/base core/types core/pipeline/runners bench/model bench/store bench/run datasets datasets/bags datasets/foxglove datasets/io datasets/mapping eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
 row reports/page $stored core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols bench/config bench/profile bench/record bench/systems bench/plan reports/tables \
   reports/drawing

@@ -337,7 +337,7 @@ OutputLayout run_layout() {
   return {.names = {"trajectory.tum", "trajectory_imu.tum", "trajectory_loop.tum", "trajectory_optimized.tum",
                     "loops.csv", "keyframes.csv", "result.json", "timings.csv", "frames.csv", "counters.csv",
                     "status.csv", "stacks.folded", "manifest.json", "labels.csv", "cost.svg", "loop_cost.svg",
-                    "images", "landmarks.csv"},
+                    "images", "landmarks.csv", "surfaces.ply"},
           .marks = marks()};
 }
 

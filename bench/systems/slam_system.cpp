@@ -28,10 +28,11 @@ struct StoredFile {
   const char* file;
   const char* kind;
 };
-constexpr StoredFile kStoredFiles[] = {
-    {"trajectory.tum", "trajectory"}, {"timings.csv", "timings"}, {"frames.csv", "frames"},
-    {"counters.csv", "counters"},     {"status.csv", "claims"},   {"stacks.folded", "stacks"},
-    {"result.json", "result"},        {"loops.csv", "loops"},     {"landmarks.csv", "landmarks"}};
+constexpr StoredFile kStoredFiles[] = {{"trajectory.tum", "trajectory"}, {"timings.csv", "timings"},
+                                       {"frames.csv", "frames"},         {"counters.csv", "counters"},
+                                       {"status.csv", "claims"},         {"stacks.folded", "stacks"},
+                                       {"result.json", "result"},        {"loops.csv", "loops"},
+                                       {"landmarks.csv", "landmarks"},   {"surfaces.ply", "surfaces"}};
 
 std::string message_of(const ProcessResult& process) {
   const std::string line = last_line(process.messages);

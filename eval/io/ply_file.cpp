@@ -5,8 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <sstream>
 #include <string_view>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
@@ -41,6 +43,9 @@ constexpr std::array<PlyType, 8> kPlyTypes{{{"char", "int8", 1, read_number<std:
 
 /// The values that a cloud has, in the order of `set_value`.
 constexpr std::array<std::string_view, 6> kPlyValues = {"x", "y", "z", "red", "green", "blue"};
+
+constexpr double kLeastCell_m = 0.04;  ///< of a thinned cloud
+constexpr double kLeastStep = 1.1;     ///< between sides of its cells
 
 struct PlyProperty {
   const PlyType* type = nullptr;
@@ -120,9 +125,7 @@ std::string ply_bytes(const std::vector<CloudPoint>& cloud) {
   return bytes;
 }
 
-std::vector<CloudPoint> read_ply(const std::filesystem::path& file) {
-  const std::string place = file.string();
-  const std::string text = read_text_file(file);
+std::vector<CloudPoint> parse_ply(const std::string& text, const std::string& place) {
   const PlyHeader header = parse_ply_header(text, place);
   const InputError early(place, "ends before its last point; copy the file again");
   std::size_t row_bytes = 0;
@@ -147,6 +150,26 @@ std::vector<CloudPoint> read_ply(const std::filesystem::path& file) {
     if (!point.p.allFinite()) throw InputError(place, "contains a point that is not finite; remove it");
   }
   return cloud;
+}
+
+std::vector<CloudPoint> thinned_cloud(const std::vector<CloudPoint>& cloud, std::size_t max_points) {
+  STILLPOINT_CHECK(max_points >= 8);
+  std::vector<CloudPoint> kept = cloud;
+  for (double cell_m = kLeastCell_m; kept.size() > max_points;) {
+    // The number of cells that a surface passes through is proportional to 1 / cell_m^2.
+    const double excess = static_cast<double>(kept.size()) / static_cast<double>(max_points);
+    cell_m *= std::max(kLeastStep, std::sqrt(excess));
+    std::set<std::tuple<double, double, double>> taken;
+    std::erase_if(kept, [&](const CloudPoint& point) {
+      const Eigen::Array3d cell = (point.p.cast<double>() / cell_m).array().floor();
+      return !taken.emplace(cell.x(), cell.y(), cell.z()).second;
+    });
+  }
+  return kept;
+}
+
+std::vector<CloudPoint> read_ply(const std::filesystem::path& file) {
+  return parse_ply(read_text_file(file), file.string());
 }
 
 }  // namespace stillpoint::eval

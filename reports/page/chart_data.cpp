@@ -129,6 +129,17 @@ std::vector<bench::LandmarkSample> aligned_landmarks(const bench::Store& store, 
   return landmarks;
 }
 
+/// Runs have surfaces if they have landmarks and depth images.
+std::vector<eval::CloudPoint> aligned_surfaces(const bench::Store& store, const bench::StoredRun& run,
+                                               const eval::Similarity& S_w_v) {
+  const std::string text = store.attachment(run, "surfaces");
+  if (text.empty()) return {};
+  std::vector<eval::CloudPoint> surfaces = eval::parse_ply(text, "surfaces of run " + run.key);
+  for (eval::CloudPoint& point : surfaces)
+    point.p = (S_w_v * Eigen::Vector3d(point.p.cast<double>())).cast<float>();
+  return surfaces;
+}
+
 /// Position of a status in `OdometryStatus`; NaN for the names of other systems.
 double status_number(const std::string& name) {
   for (int i = 0; i <= static_cast<int>(OdometryStatus::kRelocated); ++i) {
@@ -206,6 +217,7 @@ RunSeries run_series(const bench::Store& store, const bench::StoredRun& run) {
   const Trajectory truth = store.truth(run);
   const eval::Similarity S_w_v = fill_path(table, stamps, path, truth);
   series.landmarks = aligned_landmarks(store, run, S_w_v);
+  series.surfaces = aligned_surfaces(store, run, S_w_v);
   fill_worst(series, table, stamps, eval::strict_matches(truth, path));
   fill_counters(table, counters);
   fill_claims(table, store, run);

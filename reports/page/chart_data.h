@@ -13,6 +13,7 @@
 
 #include "bench/model/run_csv.h"
 #include "bench/store/store.h"
+#include "eval/io/ply_file.h"
 
 namespace stillpoint::report {
 
@@ -45,10 +46,12 @@ struct RunSeries {
   std::vector<std::size_t> numbers;              ///< indices of the frames before thinning; empty: all frames
   std::map<std::size_t, std::string> images;     ///< attachment kind by index into `t_s`
   std::vector<bench::LandmarkSample> landmarks;  ///< aligned like the positions, static ones first
+  std::vector<eval::CloudPoint> surfaces;        ///< static ones, aligned like the positions
 };
 
 /// The series with about `frames` frames, and at most as many landmarks: equal steps, every frame in which
-/// the status changes, and all of `worst` and `images`, whose indices follow.
+/// the status changes, and all of `worst` and `images`, whose indices follow. A thinned one has no surfaces:
+/// see `thinned_cloud`.
 [[nodiscard]] RunSeries thinned(const RunSeries& series, std::size_t frames);
 
 /// @throws InputError if files of the run are missing or damaged

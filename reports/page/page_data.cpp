@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -94,13 +95,16 @@ std::vector<std::string> page_images(const bench::Store& store, std::span<const 
 namespace {
 
 constexpr std::size_t kMaxTruthPoints = 2000;  // more than a plot can resolve
-// A page of 15 runs of a minute has less than 3 MB: scripts and licenses .5, images 1, series .8, landmarks
-// .2.
-constexpr std::size_t kImageBudgetBytes = 1'000'000;
+// A page of 15 runs of a minute has less than 3 MB: scripts and licenses .5, images .8, series .8, landmarks
+// .2, surfaces .4.
+constexpr std::size_t kImageBudgetBytes = 800'000;
 constexpr std::size_t kSeriesBudgetBytes = 800'000;
+constexpr std::size_t kSurfaceBudgetBytes = 400'000;
 constexpr std::size_t kSideImageBytes = 100'000'000;  // of all side files; a server holds them in memory
 constexpr std::size_t kMinFrames = 300;       // of a run, whatever the number of runs: a chart stays readable
+constexpr std::size_t kMinPoints = 300;       // of the surfaces of a run, likewise
 constexpr double kBytesPerValue = 8.0 / 3.0;  // 16 bits in base64
+constexpr double kValuesPerPoint = 4.0;       // x, y, z, color
 constexpr const char* kModulePrefix = "ms:";
 
 std::string dump_replacing_invalid_utf8(const Json& json) {
@@ -198,7 +202,21 @@ Json landmarks_json(const std::vector<bench::LandmarkSample>& landmarks) {
           {"z", packed_series(p[2])}};
 }
 
-Json series_json(const RunSeries& series, Json loops) {
+/// Positions and colors, of 5 bits per channel: 1024 red + 32 green + blue.
+Json surfaces_json(const std::vector<eval::CloudPoint>& surfaces) {
+  std::array<std::vector<double>, 3> p;
+  std::vector<double> color;
+  for (const eval::CloudPoint& point : surfaces) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) p[static_cast<std::size_t>(axis)].push_back(point.p(axis));
+    color.push_back((point.rgb[0] >> 3) << 10 | (point.rgb[1] >> 3) << 5 | point.rgb[2] >> 3);
+  }
+  return {{"x", packed_series(p[0])},
+          {"y", packed_series(p[1])},
+          {"z", packed_series(p[2])},
+          {"color", packed_series(color)}};
+}
+
+Json series_json(const RunSeries& series, Json loops, const std::vector<eval::CloudPoint>& surfaces) {
   Json columns = Json::object();
   for (const SeriesColumn& column : series.columns)
     columns[clean_line(column.name)] = packed_series(column.values);
@@ -207,6 +225,7 @@ Json series_json(const RunSeries& series, Json loops) {
       {"worst", series.worst},   {"loops", std::move(loops)},   {"faults", faults_json(series.faults)},
       {"columns", columns}};
   if (!series.landmarks.empty()) json["landmarks"] = landmarks_json(series.landmarks);
+  if (!surfaces.empty()) json["surfaces"] = surfaces_json(surfaces);
   if (!series.numbers.empty())
     json["numbers"] = packed_series(std::vector<double>(series.numbers.begin(), series.numbers.end()));
   return json;
@@ -217,6 +236,13 @@ std::size_t frames_per_run(const RunSeries& series, std::size_t runs) {
   const double bytes = kBytesPerValue * static_cast<double>(std::max<std::size_t>(1, series.columns.size()));
   return std::max(kMinFrames,
                   static_cast<std::size_t>(kSeriesBudgetBytes / bytes / static_cast<double>(runs)));
+}
+
+/// Points of the surfaces of each of `runs` runs that the page contains.
+std::size_t points_per_run(std::size_t runs) {
+  constexpr double kBytes = kBytesPerValue * kValuesPerPoint;
+  return std::max(kMinPoints,
+                  static_cast<std::size_t>(kSurfaceBudgetBytes / kBytes / static_cast<double>(runs)));
 }
 
 /// Times [ms] of all frames by module and variant.
@@ -307,14 +333,16 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
   std::map<std::string, Flame> flames;
   std::vector<RunSeries> all;
   for (const bench::StoredRun& run : runs) {
-    const RunSeries series = run_series(store, run);
+    RunSeries series = run_series(store, run);
+    const std::vector<eval::CloudPoint> surfaces = std::exchange(series.surfaces, {});
     const std::size_t max_frames = embeds ? frames_per_run(series, runs.size()) : series.t_s.size();
     const RunSeries& shown = all.emplace_back(thinned(series, max_frames));
     Json& entry = index["runs"].emplace_back(run_json(run));
     entry["frames"] = series.t_s.size();
     entry["images"] = series.images.size();
-    data.series.push_back(
-        dump_replacing_invalid_utf8(series_json(shown, loops_json(store, run, series.start_s))));
+    data.series.push_back(dump_replacing_invalid_utf8(
+        series_json(shown, loops_json(store, run, series.start_s),
+                    embeds ? eval::thinned_cloud(surfaces, points_per_run(runs.size())) : surfaces)));
     if (has_shown_times(runs, run)) {
       times = with_times(std::move(times), series, system_label(run.identity));
       if (const std::string folded = store.attachment(run, "stacks"); !folded.empty()) {

@@ -298,13 +298,23 @@ std::string plans_html(const bench::Store& store, const ReportSubject& subject) 
   return text;
 }
 
+/// A chart that is scrolled where the window is narrow, so that its texts stay legible; empty without a
+/// chart.
+std::string wide_html(const std::string& label, const std::string& chart) {
+  if (chart.empty()) return "";
+  return fmt::format(R"(<div class="wide" tabindex="0" role="group" aria-label="{}">{}</div>)", label, chart);
+}
+
 std::string openloris_html(const bench::Store& store, const ReportSubject& subject) {
   const eval::OpenlorisBenchmark benchmark = openloris_of_runs(store, subject.runs);
   if (benchmark.systems.empty()) return "";
   std::string svg = svg_text(openloris_figure(benchmark));
-  return "<h3>Correct rate per scene (OpenLORIS figure of the paper)</h3><figure class=\"openloris\" "
-         "role=\"img\" aria-label=\"Timelines of correct poses by system and scene\">" +
-         svg.substr(svg.find("<svg")) + "</figure>";
+  return "<h3>Correct rate per scene (OpenLORIS figure of the paper)</h3>" +
+         wide_html(
+             "Figure of correct rates",
+             "<figure class=\"openloris\" role=\"img\" aria-label=\"Timelines of correct poses by system "
+             "and scene\">" +
+                 svg.substr(svg.find("<svg")) + "</figure>");
 }
 
 /// Run keys of each plan; used to build the command that repeats a run.
@@ -366,7 +376,8 @@ std::string page_html(const bench::Store& store, const ReportSubject& subject, c
        {"published", tables_html(tables, true)},
        {"openloris", openloris_html(store, subject)},
        {"timing_notes", data.module_boxes.empty() ? "" : timing_notes_html(subject)},
-       {"boxes", box_plot_svg(data.module_boxes, "Time per frame and module", "ms")},
+       {"boxes",
+        wide_html("Chart of times", box_plot_svg(data.module_boxes, "Time per frame and module", "ms"))},
        {"plans", plans_html(store, subject)},
        {"licenses", licenses_html()},
        {"connections", embeds ? "" : "; connect-src 'self'"},

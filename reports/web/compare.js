@@ -48,7 +48,7 @@
     state.runs.forEach((run, i) => {
       const own = series(i), { x, y, z, qx, qy, qz, error_m: error } = own.columns, truth = page.truth(run, own.start);
       if (truth) truths.set(info(i).truth, { ...truth, color: page.color("ink"), dash: [6, 5], width: 1.2 });
-      if (x) runs.push({ x, y, z, t: own.t, q: { x: qx, y: qy, z: qz }, error, loops: own.loops, landmarks: own.landmarks, color: color(i), dash: dash(i), width: 1.8 });
+      if (x) runs.push({ x, y, z, t: own.t, q: { x: qx, y: qy, z: qz }, error, loops: own.loops, landmarks: own.landmarks, surfaces: own.surfaces, color: color(i), dash: dash(i), width: 1.8 });
     });
     return [...truths.values(), ...runs];
   }
@@ -65,6 +65,7 @@
     byId("path-caption").textContent = `3-D, z up; squares of ${text(scene.cell)} m; dashed: ground truth; ball: position at the time`
       + (shows.has("error") ? `; violet to yellow: error 0 to ${text(largest)} m` : "") + (shows.has("loops") && state.paths.some((path) => path.loops && path.loops.length) ? "; loops: solid accepted, dashed refused" : "")
       + (shows.has("landmarks") && state.paths.some((path) => path.landmarks) ? "; points: features, gray static, red dynamic" : "")
+      + (shows.has("surfaces") && state.paths.some((path) => path.surfaces) ? "; small points: static surfaces by the depth images, in their colors" : "")
       + ". Drag to turn, with the right button to move, wheel to zoom, click a path to select its time. Keys: arrows turn, with shift move, + and - zoom, 0 resets.";
   }
 
@@ -82,7 +83,7 @@
     byId("compare-paths").hidden = !state.paths.length;
     for (const box of byId("scene-options").querySelectorAll("input")) {
       box.checked = state.shows.has(box.value);
-      box.parentElement.hidden = !state.paths.some((path) => ({ error: path.error, cameras: path.q, loops: path.loops && path.loops.length, landmarks: path.landmarks })[box.value]);
+      box.parentElement.hidden = !state.paths.some((path) => ({ error: path.error, cameras: path.q, loops: path.loops && path.loops.length, landmarks: path.landmarks, surfaces: path.surfaces })[box.value]);
     }
     if (has) drawScene(); else byId("path-caption").textContent = "Top view: x to the right, y up [m]; dashed: ground truth; dot: position at the time";
     pointPaths();
@@ -233,7 +234,7 @@
       const i = state.runs.indexOf(run), one = series(i), frame = frameAt(i, state.time), part = page.element("span");
       const error = one.columns.error_m ? one.columns.error_m[frame] : null;
       const beyond = one.t[one.frames - 1] < state.time - 0.5;
-      part.append(swatch(i), page.element("b", {}, own[i] + " "), beyond ? "ended" : (error === null ? "no error" : "error " + text(error) + " m") + ", " + page.statusAt(one, frame));
+      part.append(swatch(i), page.element("b", {}, own[i]), " ", page.element("span", {}, beyond ? "ended" : (error === null ? "no error" : "error " + text(error) + " m") + ", " + page.statusAt(one, frame)));
       return part;
     }));
   }
@@ -297,7 +298,7 @@
     byId("compare-clear").addEventListener("click", () => page.compareRuns([]));
     byId("compare-time").addEventListener("input", () => setTime(Number(byId("compare-time").value), false));
     window.addEventListener("resize", () => { if (state.plot) state.plot.setSize({ width: byId("compare-error").clientWidth, height: 200 }); pointPaths(); });
-    byId("compare-view").addEventListener("change", (event) => chooseView(new Set(event.target.value === "3d" ? ["3d", "cameras", "loops", "landmarks", ...(state.runs.length === 1 ? ["error"] : [])] : [])));
+    byId("compare-view").addEventListener("change", (event) => chooseView(new Set(event.target.value === "3d" ? ["3d", "cameras", "loops", "landmarks", "surfaces", ...(state.runs.length === 1 ? ["error"] : [])] : [])));
     byId("scene-options").addEventListener("change", ({ target }) => { if (target.checked) state.shows.add(target.value); else state.shows.delete(target.value); chooseView(state.shows); });
     page.onState(() => {
       const keys = (page.stateOf("compare") || "").split(".");

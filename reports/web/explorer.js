@@ -12,7 +12,7 @@
     const place = byId("readout");
     place.replaceChildren();
     if (!series.frames) return;
-    const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
+    const add = (label, text) => { const part = page.element("span", { title: label }); part.append(page.element("b", {}, label), " ", page.element("span", {}, text)); place.append(part); };
     add("frame", String(page.frameNumber(series, frame)));
     add("time", series.t[frame].toFixed(3) + " s");
     add("status", page.statusAt(series, frame));

@@ -4,9 +4,9 @@
 (function (page) {
   const byId = (id) => document.getElementById(id);
 
-  const frameError = (series, frame) => {
+  const errorText = (series, frame) => {
     const column = series.columns.frame_to_frame_error_m, error = column ? column[frame] : null;
-    return error === null || error === undefined ? "tracking lost" : "frame-to-frame error " + (1000 * error).toPrecision(3) + " mm";
+    return error === null || error === undefined ? "tracking lost" : (1000 * error).toPrecision(3) + " mm";
   };
 
   // One button per worst frame; calls onFrame(frame) when it is pressed.
@@ -16,7 +16,7 @@
     function list() {
       byId("worst-list").replaceChildren(...series.worst.map((frame) => {
         const item = page.element("li");
-        const button = page.element("button", { type: "button", "data-frame": frame }, "frame " + page.frameNumber(series, frame) + ": " + frameError(series, frame));
+        const button = page.element("button", { type: "button", "data-frame": frame }, "frame " + page.frameNumber(series, frame) + ": " + errorText(series, frame));
         button.addEventListener("click", () => onFrame(frame));
         item.append(button);
         return item;
@@ -29,7 +29,7 @@
       image.hidden = !jpeg;
       if (jpeg) image.src = "data:image/jpeg;base64," + jpeg;
       else image.removeAttribute("src");
-      const place = rank < 0 ? "" : ", " + (rank + 1) + " of the " + series.worst.length + " worst, " + frameError(series, frame);
+      const place = rank < 0 ? "" : ", " + (rank + 1) + " of the " + series.worst.length + " worst by frame-to-frame error, " + errorText(series, frame);
       image.alt = "Annotated image of frame " + page.frameNumber(series, frame) + place;
       byId("frame-caption").textContent = "Frame " + page.frameNumber(series, frame) + place + (jpeg ? "" : "; no image embedded");
       for (const button of byId("worst-list").querySelectorAll("button"))

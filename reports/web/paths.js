@@ -15,6 +15,8 @@
     return "rgb(" + mix.join(",") + ")";
   };
 
+  const largestOf = (errors) => errors.reduce((a, b) => Math.max(a, b), 1e-9);
+
   function extent(lists) {
     let low = Infinity, high = -Infinity;
     for (const list of lists) for (const value of list) if (value !== null) { low = Math.min(low, value); high = Math.max(high, value); }
@@ -81,12 +83,26 @@
       this.view = view;
       this.canvas = page.element("canvas", { id: "path-" + view.id, tabindex: "0", role: "img", "aria-label": view.title });
       const figure = page.element("figure");
-      figure.append(this.canvas, page.element("figcaption", {}, view.title));
+      this.caption = page.element("figcaption");
+      figure.append(this.canvas, this.caption);
       place.append(figure);
       this.canvas.addEventListener("pointermove", (event) => { const frame = this.frameAt(event); if (frame !== null) onFrame(frame); });
     }
 
-    show(series, truth) { this.series = series; this.truth = truth; this.span = [-Infinity, Infinity]; this.frame = null; this.draw(); }
+    show(series, truth) { this.series = series; this.truth = truth; this.span = [-Infinity, Infinity]; this.frame = null; this.describe(); this.draw(); }
+
+    // What the colors and lines mean, below the view: there it hides no part of a path.
+    describe() {
+      const { series, truth, view, caption } = this, error = series.columns.x && series.columns.error_m;
+      caption.replaceChildren(view.title);
+      if (error) {
+        const ramp = page.element("span", { class: "ramp", "aria-hidden": "true" });
+        ramp.style.background = `linear-gradient(to right, ${RAMP.map((color) => `rgb(${color.join()})`).join()})`;
+        caption.append("; ", ramp, " error 0 to " + largestOf(error).toPrecision(3) + " m");
+      }
+      if (truth) caption.append("; gray: ground truth" + (series.columns.x ? ", red: tracking lost" : ""));
+      if (series.loops.length) caption.append("; loops: solid accepted, dashed refused");
+    }
 
     frameAt(event) {
       const { series, view, shown } = this;
@@ -134,7 +150,7 @@
     drawPath(context) {
       const { series, view, shown, span } = this;
       const xs = series.columns[view.across], ys = series.columns[view.up], error = series.columns.error_m;
-      const largest = error ? error.reduce((a, b) => Math.max(a, b), 1e-9) : 1;
+      const largest = error ? largestOf(error) : 1;
       context.lineWidth = 2.4;
       for (let i = 1; i < series.frames; ++i) {
         if (xs[i] === null || xs[i - 1] === null) continue;
@@ -144,7 +160,6 @@
         context.beginPath(); context.moveTo(shown.x(xs[i - 1]), shown.y(ys[i - 1])); context.lineTo(shown.x(xs[i]), shown.y(ys[i])); context.stroke();
       }
       context.globalAlpha = 1;
-      if (error) this.drawLegend(context, largest);
     }
 
     // Lines from each frame to the place that was recognized in it; refused ones are dashed, and below.
@@ -163,14 +178,6 @@
       }
       context.setLineDash([]);
       context.globalAlpha = 1;
-      context.fillStyle = page.color("faint");
-      context.fillText("loops: solid accepted, dashed refused", 120, 32);
-    }
-
-    drawLegend(context, largest) {
-      for (let i = 0; i < 100; ++i) { context.fillStyle = page.rampColor(i / 99); context.fillRect(12 + i, 10, 1.5, 8); }
-      context.fillStyle = page.color("faint");
-      context.fillText("error 0 to " + largest.toPrecision(3) + " m" + (this.truth ? "; grey: ground truth, red: tracking lost" : ""), 120, 18);
     }
 
     drawFrame(context) {

@@ -62,7 +62,7 @@
       return pairs.flatMap((point) => [point.x, point.y, point.z]);
     }
 
-    // Shows paths {x, y, z: [m], or null; t; q: {x, y, z} or null; color, dash, width; error; loops; landmarks}.
+    // Shows paths {x, y, z: [m], or null; t; q: {x, y, z} or null; color, dash, width; error; loops; landmarks; surfaces}.
     // `shows`: names of what is drawn besides the paths.
     show(paths, shows, eye) {
       const { three } = this;
@@ -117,6 +117,7 @@
       if (path.q && shows.has("cameras")) this.addCameras(path);
       if (path.loops && shows.has("loops")) this.addLoops(path);
       if (path.landmarks && shows.has("landmarks")) this.addLandmarks(path.landmarks);
+      if (path.surfaces && shows.has("surfaces")) this.addSurfaces(path.surfaces);
     }
 
     addCameras(path) {
@@ -136,12 +137,24 @@
 
     // Static ones in gray, dynamic ones in red.
     addLandmarks({ x, y, z, static: statics }) {
-      const { three } = this, xyz = x.flatMap((_, i) => [x[i], y[i], z[i]]);
-      for (const [part, color, size] of [[xyz.slice(0, 3 * statics), "faint", 2.5], [xyz.slice(3 * statics), "bad", 4]]) {
-        if (!part.length) continue;
-        const geometry = new three.BufferGeometry().setAttribute("position", new three.BufferAttribute(new Float32Array(part), 3));
-        this.content.add(new three.Points(geometry, new three.PointsMaterial({ color: page.color(color), size: size * (window.devicePixelRatio || 1), sizeAttenuation: false })));
-      }
+      const xyz = x.flatMap((_, i) => [x[i], y[i], z[i]]);
+      this.addPoints(xyz.slice(0, 3 * statics), 2.5, { color: page.color("faint") });
+      this.addPoints(xyz.slice(3 * statics), 4, { color: page.color("bad") });
+    }
+
+    addSurfaces({ x, y, z, color }) {
+      const channel = (value, shift) => ((value >> shift) & 31) / 31;
+      const colors = color.flatMap((value) => new this.three.Color(channel(value, 10), channel(value, 5), channel(value, 0)).convertSRGBToLinear().toArray());
+      this.addPoints(x.flatMap((_, i) => [x[i], y[i], z[i]]), 2, { vertexColors: true }, colors);
+    }
+
+    // Points of a size [px], in one color or, if there are `colors`, each in its own.
+    addPoints(xyz, size, look, colors) {
+      if (!xyz.length) return;
+      const { three } = this, geometry = new three.BufferGeometry(), floats = (values) => new three.BufferAttribute(new Float32Array(values), 3);
+      geometry.setAttribute("position", floats(xyz));
+      if (colors) geometry.setAttribute("color", floats(colors));
+      this.content.add(new three.Points(geometry, new three.PointsMaterial({ ...look, size: size * (window.devicePixelRatio || 1), sizeAttenuation: false })));
     }
 
     addMarker(path) {

@@ -59,9 +59,10 @@ window.stillpoint = {};
     if (!problem) action();
   };
 
-  // Series of a run: {start, frames, t, numbers, worst, loops, faults, landmarks, columns: {name: numbers}}; a few are cached.
+  // Series of a run: {start, frames, t, numbers, worst, loops, faults, landmarks, surfaces, columns: {name: numbers}}; a few are cached.
   // `numbers`: frame numbers if the page contains a part of the frames only, else null.
   // A fault: {begin, end: times; text}. Landmarks: {x, y, z, static: number of those at the beginning that are}, or null.
+  // Surfaces: {x, y, z, color: 1024 red + 32 green + blue, each 0 to 31}, or null.
   // A loop: {query, match: frames or -1; at, back: times; inliers, residual, reason: empty if it is accepted}.
   const cache = new Map();
   page.series = function (run) {
@@ -76,7 +77,8 @@ window.stillpoint = {};
       const faults = packed.faults.map(([begin, end, text]) => ({ begin, end, text }));
       const numbers = packed.numbers ? page.unpack(packed.numbers).map(Math.round) : null;
       const points = packed.landmarks, landmarks = points ? { x: page.unpack(points.x), y: page.unpack(points.y), z: page.unpack(points.z), static: points.static } : null;
-      cache.set(run, { start: packed.start, frames: packed.frames, t, numbers, worst: packed.worst, loops, faults, landmarks, columns });
+      const cloud = packed.surfaces, surfaces = cloud ? { x: page.unpack(cloud.x), y: page.unpack(cloud.y), z: page.unpack(cloud.z), color: page.unpack(cloud.color).map(Math.round) } : null;
+      cache.set(run, { start: packed.start, frames: packed.frames, t, numbers, worst: packed.worst, loops, faults, landmarks, surfaces, columns });
     }
     return cache.get(run);
   };

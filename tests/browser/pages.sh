@@ -33,7 +33,9 @@ if [[ -z "${STILLPOINT_REPORT_STORE:-}" ]]; then
   bench=$!
   watch "$store" || { kill "$bench"; wait "$bench" || true; exit 1; }
   wait "$bench"
-  "$program" bench "$here/sweep.toml" --store "$store" --out "$work/sweep" >"$work/sweep.log" 2>&1
+  for plan in sweep loops; do
+    "$program" bench "$here/$plan.toml" --store "$store" --out "$work/$plan" >"$work/$plan.log" 2>&1
+  done
 fi
 "$program" report "$store" --out "$work/page"
 BROWSER="$browser" PAGE="$work/page/index.html" WORK="$work" node "$here/report_page.mjs"

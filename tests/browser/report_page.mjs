@@ -149,12 +149,10 @@ await test("the legend hides and shows a line by keyboard", async () => {
 // Colors of the 3-D view, which is drawn for that: WebGL does not keep what it has shown.
 const sceneColors = async (page) => new Map(await page.evaluate(() => {
   window.stillpoint.redrawCompare();
-  const canvas = document.getElementById("compare-scene"), copy = document.createElement("canvas"), { width, height } = canvas;
-  Object.assign(copy, { width, height });
-  const context = copy.getContext("2d");
-  context.drawImage(canvas, 0, 0);
-  const counts = new Map();
-  for (const color of new Uint32Array(context.getImageData(0, 0, width, height).data.buffer)) counts.set(color, (counts.get(color) || 0) + 1);
+  const gl = document.getElementById("compare-scene").getContext("webgl2"), { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
+  const pixels = new Uint8Array(4 * width * height), counts = new Map();
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  for (const color of new Uint32Array(pixels.buffer)) counts.set(color, (counts.get(color) || 0) + 1);
   return [...counts];
 }));
 const eyeOf = (page) => page.evaluate(() => window.stillpoint.stateOf("eye"));
@@ -223,6 +221,60 @@ await test("without WebGL the top view is shown, and why", async () => {
   assert.ok(await opened.locator("#compare-path").isVisible() && !await opened.locator("#compare-scene").isVisible());
   assert.deepEqual(opened.problems, []);
   await other.close();
+});
+
+// The run with loops in 3-D; on the page of a phone and in a theme of choice by the address only.
+await test("static surfaces and loops are shown in 3-D in both themes, also on a phone, and kept by the address", async () => {
+  const before = new URL(page.url()).hash, run = await page.evaluate(() => window.stillpoint.index.runs.findIndex((one) => one.label.includes("loop")));
+  const series = await page.evaluate((i) => { window.stillpoint.compareRuns([i]); const { loops, surfaces } = window.stillpoint.series(i); return { loops: loops.map((loop) => loop.reason), points: surfaces.x.length }; }, run);
+  assert.ok(series.loops.includes("") && series.points > 500, JSON.stringify(series));
+  const box = (page, layer) => page.locator(`#scene-options [value=${layer}]`);
+  const drawnPixels = async (page) => { const counts = [...(await sceneColors(page)).values()]; return counts.reduce((sum, count) => sum + count, 0) - Math.max(...counts); };
+  const layersAreDrawn = async (page) => {
+    const click = (selector) => page.evaluate((selected) => document.querySelector(selected).click(), selector);
+    for (let theme = 0; theme < 2; ++theme) {
+      let drawn = await drawnPixels(page);
+      for (const layer of ["surfaces", "loops"]) {
+        await click(`#scene-options [value=${layer}]`);
+        const rest = await drawnPixels(page);
+        assert.ok(rest < drawn - 20, layer + " are not drawn");
+        drawn = rest;
+      }
+      for (const selector of ["#scene-options [value=surfaces]", "#scene-options [value=loops]", "#theme"]) await click(selector);
+    }
+  };
+  for (const layer of ["surfaces", "loops"]) if (!await box(page, layer).isChecked()) await box(page, layer).press("Space");
+  await page.locator("#compare-scene").press("0");
+  await layersAreDrawn(page);
+  await box(page, "cameras").uncheck();
+  const other = await open(PAGE, { viewport: { width: 390, height: 844 } }, undefined, new URL(page.url()).hash);
+  await sceneIsShown(other);
+  const shown = (page) => page.$$eval("#scene-options input", (boxes) => boxes.map((box) => [box.value, box.checked, box.parentElement.hidden]));
+  assert.deepEqual(await shown(other), await shown(page));
+  assert.match(await other.textContent("#path-caption"), /loops: solid accepted, dashed refused; .*static surfaces/);
+  await layersAreDrawn(other);
+  const split = await other.$$eval("#scene-options label:not([hidden])", (labels) => labels.filter((label) => label.getClientRects().length > 1 || label.clientHeight > 30).map((label) => label.textContent));
+  assert.deepEqual(split, [], "boxes apart from their names");
+  assert.deepEqual(await other.$$eval("#compare-readout > span", (parts) => parts.filter((part) => part.scrollWidth > part.clientWidth).map((part) => part.textContent)), [], "cut");
+  await other.evaluate((i) => { const series = window.stillpoint.series(i); series.surfaces = null; series.loops = []; window.stillpoint.redrawCompare(); }, run);
+  assert.ok(!await box(other, "surfaces").isVisible() && !await box(other, "loops").isVisible(), "a switch without data");
+  assert.deepEqual(other.problems, []);
+  await other.close();
+  await page.evaluate((hash) => { location.hash = hash; }, before);
+});
+
+await test("the meaning of colors is below the paths, no value is cut, and charts are legible on a phone", async () => {
+  const loops = await page.evaluate(() => window.stillpoint.index.runs.find((run) => run.label.includes("loop")).key);
+  for (const [width, colorScheme] of [[1400, "light"], [390, "dark"]]) {
+    const opened = await open(PAGE, { viewport: { width, height: 844 }, colorScheme }, undefined, "#run=" + loops);
+    for (const caption of await opened.locator("#paths figcaption").all())
+      assert.match(await caption.textContent(), /error 0 to [\d.]+ m; gray: ground truth, red: tracking lost; loops: solid accepted, dashed refused$/);
+    const cut = await opened.$$eval("#readout > span", (parts) => parts.filter((part) => part.lastElementChild.scrollWidth > part.lastElementChild.clientWidth || part.lastElementChild.getBoundingClientRect().right > part.getBoundingClientRect().right + 1).map((part) => part.textContent));
+    assert.deepEqual(cut, []);
+    assert.ok(await opened.$$eval("#worst-list button", (buttons) => buttons.every((button) => button.offsetHeight < 30)), "a worst frame in two lines");
+    assert.ok(await opened.$$eval(".wide svg", (charts) => charts.length > 0 && charts.every((chart) => chart.clientWidth >= 700)));
+    await opened.close();
+  }
 });
 
 await test("the address holds the state of the page", async () => {

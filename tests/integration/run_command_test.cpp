@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "eval/io/ply_file.h"
 #include "tests/support/program.h"
 #include "tests/support/sequences/rendered_sequence.h"
 
@@ -159,6 +160,7 @@ TEST(RunCommand, WritesImagesOfTheWorstFramesOnly) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(names_in(out.path() / "images").size(), 3u);
   EXPECT_TRUE(std::filesystem::exists(out.path() / "landmarks.csv"));
+  EXPECT_GT(eval::read_ply(out.path() / "surfaces.ply").size(), 500u);
 }
 
 TEST(RunCommand, RemovesWhatOnlyAnEarlierRunWrote) {
@@ -168,8 +170,8 @@ TEST(RunCommand, RemovesWhatOnlyAnEarlierRunWrote) {
   };
   ASSERT_EQ(run({"--max-frames", "20"}), 0);
   const std::vector<std::string> names = names_in(out.path());
-  ASSERT_EQ(run({"--max-frames", "20", "--images", "1", "--dump", "labels", "--imu-rate"}), 0);
-  EXPECT_EQ(names_in(out.path()).size(), names.size() + 4);
+  ASSERT_EQ(run({"--max-frames", "40", "--images", "1", "--dump", "labels", "--imu-rate"}), 0);
+  EXPECT_EQ(names_in(out.path()).size(), names.size() + 5);
   out.write("notes.txt", "of the user");
   ASSERT_EQ(run({"--max-frames", "20"}), 0);
   EXPECT_TRUE(std::filesystem::remove(out.path() / "notes.txt"));

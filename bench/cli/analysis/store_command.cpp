@@ -243,6 +243,7 @@ std::string file_name(const std::string& kind) {
     return kind + ".csv";
   if (kind == "claims") return "status.csv";
   if (kind == "stacks") return "stacks.folded";
+  if (kind == "surfaces") return "surfaces.ply";
   if (kind.starts_with(kImageKind)) return "image_" + kind.substr(kImageKind.size()) + ".jpg";
   return kind + (kind == "result" ? ".json" : ".txt");
 }

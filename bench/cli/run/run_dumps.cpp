@@ -35,6 +35,7 @@ constexpr const char* kCostFile = "cost.svg";
 constexpr const char* kLoopCostFile = "loop_cost.svg";
 constexpr const char* kImagesFolder = "images";
 constexpr const char* kLandmarksFile = "landmarks.csv";
+constexpr const char* kSurfacesFile = "surfaces.ply";
 
 std::string cost_svg(const OdometryRun& run) {
   return report::svg_text(report::cost_plot(report::cost_trend(report::frame_costs(run))));
@@ -67,8 +68,10 @@ RunDumps::RunDumps(DumpRequest request, const datasets::SensorStream& stream, co
   const datasets::SequenceInfo& info = stream.info();
   const report::AnnotationStyle style = report::annotation_style(frontend);
   if (!request_.video.empty()) video_.emplace(request_.video, style, report::mean_rate_hz(info.frame_times));
-  if (request_.images > 0)
+  if (request_.images > 0) {
     worst_frames_.emplace(request_.folder / kImagesFolder, request_.images, style, info);
+    surfaces_.emplace(info.rig.camera);
+  }
   if (!request_.map_cloud.empty())
     map_.emplace(info.rig.camera, datasets::VoxelMapOptions{.voxel_m = request_.map_voxel_m});
   if (!request_.mcap.empty()) {
@@ -89,16 +92,6 @@ bool RunDumps::attempt(const char* name, const Action& action) {
   }
 }
 
-namespace {
-
-void fuse(datasets::VoxelMap& map, const Frame& frame, const Pose& T_w_c, const SemanticMask& mask) {
-  map.add(frame, T_w_c, [&mask](int column, int row, double depth_m) {
-    return depth_m < mask.threshold_at(Eigen::Vector2d(column, row));
-  });
-}
-
-}  // namespace
-
 void RunDumps::add_to_map(const FrameReport& report) {
   constexpr double kInterval_s = 0.095;  // 10 Hz, with jitter
   const OdometryUpdate& update = report.update;
@@ -110,7 +103,7 @@ void RunDumps::add_to_map(const FrameReport& report) {
     map_frames_.push_back(
         {report.tracked.id, report.frame.t, update.segment, update.T_w_c, report.dynamic.mask});
   } else {
-    fuse(*map_, report.frame, update.T_w_c, report.dynamic.mask);
+    report::add_static_pixels(*map_, report.frame, update.T_w_c, report.dynamic.mask);
   }
 }
 
@@ -124,7 +117,8 @@ void RunDumps::fuse_optimized(const LoopRun* loops) {
       if (found == poses.end() || found->t != kept.t) continue;  // of a world that is not located in the map
       T_w_c = found->T_w_f;
     }
-    fuse(*map_, stream_.load_frame(static_cast<std::size_t>(kept.index)), T_w_c, kept.mask);
+    report::add_static_pixels(*map_, stream_.load_frame(static_cast<std::size_t>(kept.index)), T_w_c,
+                              kept.mask);
   }
 }
 
@@ -133,6 +127,7 @@ void RunDumps::add(const FrameReport& report) {
   if (video_ && !attempt("--video", [&] { video_->add(report); })) video_.reset();
   if (worst_frames_ && !attempt("--images", [&] { worst_frames_->add(report); })) worst_frames_.reset();
   if (request_.images > 0) landmarks_.add(report);
+  if (surfaces_ && !attempt("--images", [&] { surfaces_->add(report); })) surfaces_.reset();
   if (recording_ && !attempt("--mcap", [&] { recording_->add(report); })) recording_.reset();
   if (map_ && !attempt("--map-cloud", [&] { add_to_map(report); })) map_.reset();
 }
@@ -157,6 +152,8 @@ std::vector<std::string> RunDumps::finish(const OdometryRun* run) {
     attempt("--dump labels", [&] { write_files(request_.folder, {{kLabelsFile, labels_.text()}}); });
   if (request_.images > 0)
     attempt("--images", [&] { write_files(request_.folder, {{kLandmarksFile, landmarks_.text()}}); });
+  if (const std::string surfaces = surfaces_ ? surfaces_->ply() : ""; !surfaces.empty())
+    attempt("--images", [&] { write_files(request_.folder, {{kSurfacesFile, surfaces}}); });
   if (request_.cost && run != nullptr)
     attempt("--dump cost", [&] { write_files(request_.folder, {{kCostFile, cost_svg(*run)}}); });
   if (request_.cost && loops != nullptr)

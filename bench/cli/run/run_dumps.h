@@ -17,6 +17,7 @@
 #include "reports/frames/annotated_frames.h"
 #include "reports/frames/landmark_samples.h"
 #include "reports/frames/run_recording.h"
+#include "reports/frames/surface_samples.h"
 
 namespace stillpoint::bench {
 
@@ -36,13 +37,13 @@ class LabelDump {
 
 /// The requested outputs.
 struct DumpRequest {
-  std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, loop_cost.svg, landmarks.csv, images/
+  std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, loop_cost.svg, and those of `images`
   bool labels = false;
   bool cost = false;
-  std::filesystem::path video;      ///< folder; empty = none
-  std::size_t images = 0;           ///< number of annotated images of the worst frames; with landmarks.csv
-  std::filesystem::path mcap;       ///< recording for viewers; empty = none
-  bool mcap_images = false;         ///< the recording contains color and depth images
+  std::filesystem::path video;  ///< folder; empty = none
+  std::size_t images = 0;       ///< number of annotated images of the worst frames; with landmarks, surfaces
+  std::filesystem::path mcap;   ///< recording for viewers; empty = none
+  bool mcap_images = false;     ///< the recording contains color and depth images
   std::filesystem::path map_cloud;  ///< point cloud of static surfaces; empty = none
   double map_voxel_m = 0.02;        ///< side of its voxels
   bool closes_loops = false;        ///< the cloud is that of the optimized trajectory
@@ -100,6 +101,7 @@ class RunDumps {
   std::optional<report::RunVideo> video_;
   std::optional<report::WorstFrames> worst_frames_;
   report::LandmarkSamples landmarks_;
+  std::optional<report::SurfaceSamples> surfaces_;
   std::optional<report::RunRecording> recording_;
   std::optional<datasets::VoxelMap> map_;
   std::optional<Timestamp> map_t_;  ///< of the last frame in the map

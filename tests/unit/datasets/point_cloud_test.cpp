@@ -128,6 +128,23 @@ TEST(PlyFile, DefectiveFilesAreErrors) {
   }
 }
 
+TEST(ThinnedCloud, HasOnePointPerCell) {
+  std::vector<CloudPoint> plane;
+  for (int row = 0; row < 100; ++row)
+    for (int column = 0; column < 100; ++column)
+      plane.push_back({.p = {0.04F * static_cast<float>(column), 0.04F * static_cast<float>(row), 1.0F}});
+  EXPECT_EQ(eval::thinned_cloud(plane, 10000).size(), 10000U);
+  const std::vector<CloudPoint> thin = eval::thinned_cloud(plane, 2500);
+  EXPECT_LE(thin.size(), 2500U);
+  EXPECT_GT(thin.size(), 1500U);
+  // Every part of the plane keeps points: its quarters have a quarter of them.
+  EXPECT_NEAR(static_cast<double>(std::ranges::count_if(
+                  thin, [](const auto& point) { return point.p.x() < 2.0F && point.p.y() < 2.0F; })),
+              0.25 * static_cast<double>(thin.size()), 0.05 * static_cast<double>(thin.size()));
+  for (CloudPoint& point : plane) point.p -= Eigen::Vector3f(2.02F, 2.02F, 0.0F);
+  EXPECT_LE(eval::thinned_cloud(plane, 8).size(), 8U);
+}
+
 TEST(CloudDistance, TheTreeFindsTheNearestPoint) {
   Random random(1);
   std::vector<Eigen::Vector3f> points;

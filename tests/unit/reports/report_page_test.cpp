@@ -12,6 +12,7 @@
 #include "bench/config/toml_source.h"
 #include "bench/model/run_csv.h"
 #include "bench/store/store_writer.h"
+#include "eval/io/ply_file.h"
 #include "reports/page/chart_data.h"
 #include "reports/page/page_data.h"
 #include "reports/tables/base64.h"
@@ -53,6 +54,7 @@ void fill_store(const std::filesystem::path& file, const bench::RunIdentity& ide
   outcome.attachments["trajectory"] = "1.0 0 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n";
   outcome.attachments["truth"] = "1.0 0 0 0 0 0 0 1\n1.1 0.5 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n";
   outcome.attachments["landmarks"] = "x,y,z,dynamic\n0.5,1,2,1\n0,1,2,0\n";
+  outcome.attachments["surfaces"] = eval::ply_bytes({{{0.5F, 1.0F, 2.0F}, {255, 128, 8}}, {{0, 1, 2}, {}}});
   outcome.attachments["counters"] =
       "frame,t_ns,status,tracked_features,window_landmarks,depth_landmarks,dynamic_features,solver_"
       "iterations,"
@@ -194,6 +196,9 @@ TEST(RunSeries, ContainsRotationsAndAlignedLandmarksStaticOnesFirst) {
   EXPECT_NEAR(series.landmarks[0].p_w.x(), 0.0, 1e-9);
   EXPECT_NEAR(series.landmarks[1].p_w.x(), 0.5, 1e-9);
   EXPECT_NEAR((series.landmarks[1].p_w - series.landmarks[0].p_w).norm(), 0.5, 1e-9);
+  ASSERT_EQ(series.surfaces.size(), 2u);
+  EXPECT_NEAR((series.surfaces[0].p.cast<double>() - series.landmarks[1].p_w).norm(), 0.0, 1e-6);
+  EXPECT_TRUE(thinned(series, 2).surfaces.empty());
   for (const char* name : {"qx", "qy", "qz"})
     EXPECT_TRUE(std::ranges::any_of(series.columns, [&](const auto& column) { return column.name == name; }));
 }
@@ -215,6 +220,47 @@ TEST(ReportPage, ContainsTheLoopsOfTheRunButNotThoseToALoadedMap) {
   EXPECT_NE(embedded.find(",60,1.5,\"\"]"), std::string::npos) << embedded;
   EXPECT_NE(embedded.find(",10,2.0,\"few_inliers\""), std::string::npos) << embedded;
   EXPECT_EQ(std::ranges::count(embedded, '['), 3) << embedded;  // the list and two loops
+}
+
+TEST(ReportPage, ContainsTheStaticSurfacesWithColorsOfFiveBits) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const bench::Store store(folder.path() / "s");
+  const PageData data = page_data(store, store.runs(), RunData::kEmbedded);
+  const nlohmann::json surfaces = nlohmann::json::parse(data.series.at(0)).at("surfaces");
+  // 31 * 1024 + 16 * 32 + 1 is the larger one, 0 the other: numbers 65534 and 0.
+  EXPECT_EQ(surfaces["color"]["low"], 0.0);
+  EXPECT_EQ(surfaces["color"]["step"], 32257.0 / 65534.0);
+  EXPECT_EQ(surfaces["color"]["data"], "/v8AAA==");
+  EXPECT_EQ(surfaces["x"]["data"], "/v8AAA==");
+}
+
+TEST(ReportPage, ThinsTheStaticSurfacesInOneFileButNotInSideFiles) {
+  const TemporaryFolder folder;
+  std::vector<eval::CloudPoint> cloud(8000);
+  for (int i = 0; i < 8000; ++i)
+    cloud[static_cast<std::size_t>(i)].p = 0.1F * Eigen::Vector3i(i % 100, i / 100, 0).cast<float>();
+  {
+    bench::StoreWriter writer(folder.path() / "s");
+    for (int seed = 1; seed <= 15; ++seed) {
+      const bench::RunIdentity identity{.variant = "vo", .sequence = "a", .seed = seed};
+      static_cast<void>(writer.acquire(identity));
+      bench::RunOutcome outcome{.outcome = bench::Outcome::kOk};
+      outcome.attachments = {{"trajectory", "1.0 0 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n"},
+                             {"surfaces", eval::ply_bytes(cloud)}};
+      writer.finish(identity, outcome);
+    }
+  }
+  const bench::Store store(folder.path() / "s");
+  const auto bytes_with = [&](RunData place) {
+    std::size_t bytes = 0;
+    for (const std::string& series : page_data(store, store.runs(), place).series) bytes += series.size();
+    return bytes;
+  };
+  const std::size_t embedded = bytes_with(RunData::kEmbedded);
+  EXPECT_LT(embedded, 420'000u);
+  EXPECT_GT(embedded, 200'000u);
+  EXPECT_GT(bytes_with(RunData::kSideFiles), 15u * 8000u * 10u);
 }
 
 TEST(ReportPage, IsAPureFunctionOfTheStore) {
