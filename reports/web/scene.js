@@ -4,7 +4,7 @@
 (function (page) {
   const CAMERAS = 40; // drawn per run, at equal steps
   const HOME = [-1, -1.4, 1.1]; // direction from the center to the eye
-  const CLICK_PX = 14, TURN = 0.12, STEP_PX = 40;
+  const CLICK_PX = 14, TURN = 0.12, STEP_PX = 40, ZOOM = 1 / 1.2; // ZOOM: of the distance, as OrbitControls counts it
   let library = null;
 
   async function decode() {
@@ -194,8 +194,8 @@
       const { controls } = this, turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
       if (turns && event.shiftKey) controls.pan(-STEP_PX * turns[0], -STEP_PX * turns[1]);
       else if (turns) { controls.rotateLeft(TURN * turns[0]); controls.rotateUp(TURN * turns[1]); }
-      else if (event.key === "+") controls.dollyIn(1.2);
-      else if (event.key === "-") controls.dollyOut(1.2);
+      else if (event.key === "+") controls.dollyIn(ZOOM);
+      else if (event.key === "-") controls.dollyOut(ZOOM);
       else if (event.key === "0") this.home();
       else return;
       event.preventDefault();

@@ -178,6 +178,11 @@ await test("paths are shown in 3-D with cameras and error colors, by keyboard an
   await page.locator("#compare-scene").focus();
   for (const key of ["ArrowLeft", "Shift+ArrowUp", "+", "0"]) { await page.keyboard.press(key); eyes.push(await eyeOf(page)); }
   assert.equal(new Set(eyes).size, 4);
+  const distance = (eye) => { const at = eye.split(" ").map(Number); return Math.hypot(at[0] - at[3], at[1] - at[4], at[2] - at[5]); };
+  assert.ok(distance(eyes[2]) < 0.9 * distance(eyes[1]), "+ goes nearer");
+  await page.keyboard.press("-");
+  assert.ok(distance(await eyeOf(page)) > 1.1 * distance(eyes[3]), "- goes away");
+  await page.keyboard.press("0");
   assert.equal((await runs(page)).frame, frame, "the keys of the scene select no frame");
   const canvas = page.locator("#compare-scene"), time = () => page.textContent("#compare-at");
   await canvas.scrollIntoViewIfNeeded();
@@ -458,16 +463,26 @@ await test("the theme button switches between light and dark", () => lightAndDar
 
 await test("no network requests, warnings or errors occurred", () => assert.deepEqual(page.problems, []));
 
+// Those of reports/figures.
 if (STILLPOINT_SCREENSHOTS) {
-  for (const colorScheme of ["light", "dark"]) {
-    const opened = await open(PAGE, { colorScheme, viewport: { width: 1200, height: 1500 } });
-    await opened.evaluate(() => { for (const detail of document.querySelectorAll("#published details")) detail.open = false; });
-    await opened.evaluate(() => window.stillpoint.selectRun(Math.max(0, window.stillpoint.index.runs.findIndex((run) => run.sequence === "walking_xyz"))));
-    await opened.keyboard.press("w");
-    await opened.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_${colorScheme}.png` });
-    await opened.locator("#runs").screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_run_${colorScheme}.png` });
-    await opened.close();
-  }
+  const light = await open(PAGE, { colorScheme: "light", viewport: { width: 1200, height: 1500 } });
+  await light.evaluate(() => window.stillpoint.selectRun(Math.max(0, window.stillpoint.index.runs.findIndex((run) => run.sequence === "walking_xyz"))));
+  await light.keyboard.press("w");
+  await light.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_light.png` });
+  await light.close();
+  const dark = await open(PAGE, { colorScheme: "dark", viewport: { width: 1200, height: 1050 } });
+  await dark.evaluate(() => {
+    const { runs } = window.stillpoint.index, of = (label) => runs.findIndex((run) => run.label === label && run.sequence.startsWith("walking_xyz + blank"));
+    window.stillpoint.compareRuns([of("stillpoint"), of("vo")]);
+  });
+  await dark.selectOption("#compare-view", "3d");
+  await sceneIsShown(dark);
+  await dark.locator("#compare-time").press("End");
+  await dark.locator("#compare-scene").press("-");
+  await dark.locator("#compare-scene").press("-");
+  await dark.evaluate(() => { document.activeElement.blur(); document.getElementById("compare").scrollIntoView(); });
+  await dark.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_compare_dark.png` });
+  await dark.close();
 }
 
 // The page with `count` runs of 1,000 frames each, replicated from its first run.
