@@ -3,12 +3,14 @@
 
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace stillpoint::report {
 namespace {
 
 constexpr double kFusionInterval_s = 0.495;      // 2 Hz, with jitter
 constexpr double kSurfaceVoxel_m = 0.04;         // a room of 5 m x 5 m has about 50,000
-constexpr std::size_t kMaxSurfacePoints = 8000;  // 120 kB per run in the store
+constexpr std::size_t kMaxSurfacePoints = 8000;  // 240 kB per run in the store
 
 }  // namespace
 
@@ -32,7 +34,15 @@ void SurfaceSamples::add(const FrameReport& report) {
 
 std::string SurfaceSamples::ply() const {
   const std::vector<eval::CloudPoint> cloud = eval::thinned_cloud(map_.cloud(), kMaxSurfacePoints);
-  return cloud.empty() ? "" : eval::ply_bytes(cloud);
+  if (cloud.empty()) return "";
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+      cloud.size());
+  for (const eval::CloudPoint& point : cloud)
+    text += fmt::format("{:.3f} {:.3f} {:.3f} {} {} {}\n", point.p.x(), point.p.y(), point.p.z(),
+                        point.rgb[0], point.rgb[1], point.rgb[2]);
+  return text;
 }
 
 }  // namespace stillpoint::report
