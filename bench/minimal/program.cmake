@@ -9,7 +9,7 @@ set(more_sources
   bench/profile/meters/allocations_uncounted bench/profile/meters/device_info bench/profile/meters/process_usage
   bench/profile/meters/run_monitor reports/drawing/chart reports/drawing/cost_plots reports/drawing/curves reports/drawing/drawing
   reports/drawing/evaluation/error_figures reports/drawing/evaluation/figures reports/drawing/name_spans reports/drawing/openloris_figure reports/drawing/evaluation/path_figure reports/drawing/evaluation/statistics_figure reports/frames/annotated_frames
-  reports/frames/landmark_samples reports/frames/surface_samples reports/tables/base64 reports/tables/data_table reports/tables/text_format reports/text/evaluation_report)
+  reports/frames/landmark_samples reports/frames/surface_samples reports/tables/data_table reports/tables/text_format reports/text/evaluation_report)
 set(program_sources
   bench/cli/command_line bench/cli/console bench/cli/main bench/cli/analysis/eval_command
   bench/cli/analysis/eval_cloud_command bench/cli/analysis/eval_figures bench/cli/analysis/eval_results bench/cli/analysis/find_protocol_command

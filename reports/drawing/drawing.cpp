@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "eval/io/base64.h"
 #include "reports/drawing/drawing_module.h"
 #include "reports/drawing/name_spans.h"
 #include "reports/drawing/theme.h"
-#include "reports/tables/base64.h"
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
@@ -105,8 +105,7 @@ struct SvgWriter {
         "<image x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" preserveAspectRatio=\"none\" "
         "style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{}\"/>\n",
         raster.top_left.x, raster.top_left.y, raster.bottom_right.x - raster.top_left.x,
-        raster.bottom_right.y - raster.top_left.y,
-        base64({reinterpret_cast<const unsigned char*>(png.data()), png.size()}));
+        raster.bottom_right.y - raster.top_left.y, eval::base64(png));
   }
 };
 

@@ -14,7 +14,7 @@
 #include "bench/model/run_csv.h"
 #include "bench/model/run_notes.h"
 #include "bench/profile/timeline.h"
-#include "reports/tables/base64.h"
+#include "eval/io/base64.h"
 #include "reports/tables/run_cells.h"
 #include "reports/tables/text_format.h"
 
@@ -39,21 +39,20 @@ Json packed_series(std::span<const double> values) {
     is_first = false;
   }
   const double step = high > low ? (high - low) / kSteps : 1.0;
-  std::vector<unsigned char> bytes;
+  std::string bytes;
   for (const double value : values) {
     const auto number =
         std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - low) / step)) : kNoValue;
-    bytes.push_back(static_cast<unsigned char>(number & 0xFF));
-    bytes.push_back(static_cast<unsigned char>(number >> 8));
+    bytes += static_cast<char>(number & 0xFF);
+    bytes += static_cast<char>(number >> 8);
   }
-  return {{"low", low}, {"step", step}, {"data", base64(bytes)}};
+  return {{"low", low}, {"step", step}, {"data", eval::base64(bytes)}};
 }
 
 namespace {
 
 std::string image_base64(const bench::Store& store, const bench::StoredRun& run, const std::string& kind) {
-  const std::string jpeg = store.attachment(run, kind);
-  return base64({reinterpret_cast<const unsigned char*>(jpeg.data()), jpeg.size()});
+  return eval::base64(store.attachment(run, kind));
 }
 
 /// Frames of a run that have an image, worst first.

@@ -14,6 +14,7 @@
 #include "bench/store/store.h"
 #include "bench/store/store_writer.h"
 #include "core/base/error.h"
+#include "eval/io/base64.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kExportVersion = 2;
+constexpr int kExportVersion = 3;
 constexpr const char* kVersionKey = "stillpoint_store";
 
 Json identity_json(const RunIdentity& identity) {
@@ -86,6 +87,23 @@ double metric_value_of(const Json& metric) {
   return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
 }
 
+/// JSON has no bytes that are not UTF-8, as those of images and of logs of some programs.
+Json attachment_json(const std::string& content) {
+  if (is_utf8(content)) return content;
+  return {{"base64", eval::base64(content)}};
+}
+
+std::string attachment_of(const Json& attachment) {
+  if (attachment.is_object()) return eval::bytes_of_base64(attachment.at("base64").get<std::string>());
+  return attachment.get<std::string>();
+}
+
+/// Versions 1 and 2 wrote U+FFFD in place of most bytes of images.
+bool is_lost_image(const std::string& kind, const std::string& content) {
+  return kind.starts_with(kImageKind) && content.find("\xEF\xBF\xBD") != std::string::npos &&
+         is_utf8(content);
+}
+
 Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
   Json json = {{"key", run.key},
                {"identity", identity_json(run.identity)},
@@ -110,7 +128,7 @@ Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
   const bool everything = extent == ExportExtent::kEverything;
   json["attachments"] = Json::object();
   for (const auto& [kind, blob] : run.blobs) {
-    if (everything) json["attachments"][kind] = store.attachment(run, kind);
+    if (everything) json["attachments"][kind] = attachment_json(store.attachment(run, kind));
   }
   json["manifest"] = everything ? store.manifest(run) : "";
   return json;
@@ -129,8 +147,11 @@ RunOutcome outcome_of_json(const Json& json) {
     outcome.costs.push_back({cost.at("module"), cost.at("per"), cost.at("calls"), cost.at("mean_ms"),
                              cost.at("median_ms"), cost.at("p95_ms"), cost.at("max_ms")});
   }
-  for (const auto& [kind, content] : json.at("attachments").items())
-    outcome.attachments[current_kind(kind)] = content;
+  for (const auto& [name, attachment] : json.at("attachments").items()) {
+    const std::string kind = current_kind(name);
+    std::string content = attachment_of(attachment);
+    if (!is_lost_image(kind, content)) outcome.attachments[kind] = std::move(content);
+  }
   outcome.manifest = json.at("manifest");
   outcome.started = json.at("started");
   outcome.ended = json.at("ended");
@@ -179,7 +200,6 @@ std::string export_store(const fs::path& file, ExportExtent extent) {
   json["accepted"] = Json::array();
   for (const Acceptance& acceptance : store.acceptances())
     json["accepted"].push_back(acceptance_json(acceptance));
-  // Logs of programs may not be UTF-8; every other text is.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

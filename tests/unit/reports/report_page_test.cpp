@@ -15,23 +15,11 @@
 #include "eval/io/ply_file.h"
 #include "reports/page/chart_data.h"
 #include "reports/page/page_data.h"
-#include "reports/tables/base64.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::report {
 namespace {
-
-std::string base64_of(const std::string& text) {
-  return base64({reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-}
-
-TEST(Base64, ConformsToRfc4648) {
-  EXPECT_EQ(base64_of(""), "");
-  EXPECT_EQ(base64_of("f"), "Zg==");
-  EXPECT_EQ(base64_of("fo"), "Zm8=");
-  EXPECT_EQ(base64_of("foobar"), "Zm9vYmFy");
-}
 
 TEST(PackedSeries, KeepsTheRangeAndMarksMissingValues) {
   const std::vector<double> values = {-1.0, std::numeric_limits<double>::quiet_NaN(), 65533.0};

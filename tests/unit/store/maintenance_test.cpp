@@ -141,6 +141,40 @@ TEST(StoreMaintenance, ExportAndImportPreserveEverything) {
   EXPECT_EQ(imported.manifest(run), "{}");
 }
 
+TEST(StoreMaintenance, ExportAndImportPreserveEveryByteOfFiles) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "from.sqlite";
+  const std::string jpeg("\xFF\xD8\xFF\xE0\0\x10JFIF", 10);
+  const std::string log = "caf\xE9";
+  {
+    StoreWriter writer(from);
+    static_cast<void>(writer.acquire(identity_of("a")));
+    writer.finish(identity_of("a"), {.attachments = {{"image:000042", jpeg}, {"log", log}}});
+  }
+  const fs::path into = folder.path() / "into.sqlite";
+  import_store(export_store(from), "runs.json", into);
+  const Store imported(into);
+  const StoredRun run = imported.runs().front();
+  EXPECT_EQ(imported.attachment(run, "image:000042"), jpeg);
+  EXPECT_EQ(imported.attachment(run, "log"), log);
+}
+
+TEST(StoreMaintenance, ImagesThatOldExportsDamagedAreNotImported) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "from.sqlite";
+  {
+    StoreWriter writer(from);
+    static_cast<void>(writer.acquire(identity_of("a")));
+    writer.finish(identity_of("a"),
+                  {.attachments = {{"image:000042", "\xEF\xBF\xBD\xEF\xBF\xBD"}, {"log", "l"}}});
+  }
+  const fs::path into = folder.path() / "into.sqlite";
+  import_store(export_store(from), "runs.json", into);
+  const StoredRun run = Store(into).runs().front();
+  EXPECT_EQ(run.blobs.size(), 1U);
+  EXPECT_TRUE(run.blobs.contains("log"));
+}
+
 TEST(StoreMaintenance, ExportsNumbersWithoutFiles) {
   const TemporaryFolder folder;
   const fs::path from = store_of(folder, "from.sqlite", {"a", "b"});
@@ -157,7 +191,7 @@ TEST(StoreMaintenance, RejectsATextThatIsNotAnExport) {
   const TemporaryFolder folder;
   const fs::path into = folder.path() / "into.sqlite";
   expect_input_error([&] { import_store("{", "runs.json", into); }, {"runs.json", "not an exported store"});
-  expect_input_error([&] { import_store("{\"stillpoint_store\": 3}", "runs.json", into); },
+  expect_input_error([&] { import_store("{\"stillpoint_store\": 4}", "runs.json", into); },
                      {"newer version"});
 }
 
