@@ -26,7 +26,7 @@ inline constexpr const char* kPlyMagic = "ply\n";
 /// A binary file with the properties float x, y, z and uchar red, green, blue.
 [[nodiscard]] std::string ply_bytes(const std::vector<CloudPoint>& cloud);
 
-/// @param place name of the text in error messages
+/// Of a text; `place` is its name in error messages.
 /// @throws InputError if it is no PLY file, has no points or lists in front of them, ends early, or contains
 /// numbers that are not finite
 [[nodiscard]] std::vector<CloudPoint> parse_ply(const std::string& text, const std::string& place);
@@ -35,8 +35,8 @@ inline constexpr const char* kPlyMagic = "ply\n";
 [[nodiscard]] std::vector<CloudPoint> read_ply(const std::filesystem::path& file);
 
 /// One point of each cell of a grid: the first one. The side of the cells grows from 4 cm until at most
-/// `max_points` are left; a smaller cloud is not changed.
-/// @param max_points >= 8, the number of cells around the origin
+/// `max_points` are left, which is at least 8, the number of cells around the origin; a smaller cloud is not
+/// changed.
 [[nodiscard]] std::vector<CloudPoint> thinned_cloud(const std::vector<CloudPoint>& cloud,
                                                     std::size_t max_points);
 

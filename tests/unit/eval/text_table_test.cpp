@@ -85,7 +85,7 @@ TEST(TextRow, TimesInTheWrongUnitAreErrorsWithAHint) {
     EXPECT_EQ(row.time(0, TimeUnit::kNanoseconds), Timestamp{1403636579763555584});
     EXPECT_EQ(row.time(1, TimeUnit::kSeconds), Timestamp{1'500'000'000});
     expect_input_error([&] { static_cast<void>(row.time(0, TimeUnit::kSeconds)); },
-                       {"a.txt:1", "is it in nanoseconds instead of seconds"});
+                       {"a.txt:1", "is it in nanoseconds? convert it to seconds"});
     expect_input_error([&] { static_cast<void>(row.time(1, TimeUnit::kNanoseconds)); },
                        {"a.txt:1", "is the file in seconds"});
   });
