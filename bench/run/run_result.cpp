@@ -93,8 +93,8 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const O
   if (summary.imu_health.gaps > 0) {
     warnings.push_back(
         fmt::format("imu: {} gap(s) between samples are longer than {} s, over which the motion is not "
-                    "integrated; record "
-                    "without gaps at 100 Hz or more, or run without the IMU (--variant vo)",
+                    "integrated; record without gaps at 100 Hz or more, or run without the IMU "
+                    "(--variant vo)",
                     summary.imu_health.gaps, ImuConfig{}.max_gap_s));
   }
   if (summary.imu_health.rejected_samples > 0) {

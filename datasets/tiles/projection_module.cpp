@@ -64,8 +64,7 @@ std::string area_problem(PJ_CONTEXT* context, const PJ* crs, const std::vector<P
   const PlanePoint first = degrees_of(mercator.front());
   return fmt::format(
       "has the trajectory at latitude {:.4f} and longitude {:.4f} deg, but is for latitudes from {:g} to "
-      "{:g} "
-      "and longitudes from {:g} to {:g} deg only",
+      "{:g} and longitudes from {:g} to {:g} deg only",
       first.y, first.x, south, north, west, east);
 }
 

@@ -63,8 +63,8 @@ struct Raster {
   Point2 top_left;
   Point2 bottom_right;
   std::size_t columns = 0;
-  std::vector<unsigned char>
-      pixels;  ///< red, green and blue of each pixel, row by row from the top; not empty
+  /// Red, green and blue of each pixel, row by row from the top; not empty.
+  std::vector<unsigned char> pixels;
 
   [[nodiscard]] std::size_t rows() const { return pixels.size() / (3 * columns); }
 };

@@ -22,8 +22,8 @@ class SurfaceSamples {
   /// Frames in order.
   void add(const FrameReport& report);
 
-  /// At most 8000 points in a PLY file, as text, since exported stores contain no other bytes; empty without
-  /// any, e.g. without depth images.
+  /// At most 8000 points in a PLY file, as text in steps of 1 mm; empty without any, e.g. without depth
+  /// images.
   [[nodiscard]] std::string ply() const;
 
  private:

@@ -288,8 +288,7 @@ std::vector<Option> figure_options(EvalArguments& a) {
        &a.occupancy_grid},
       {"--map-tiles",
        "Map tiles below the paths in x and y: an address with {z}, {x} and {y} (https:// or file:///); those "
-       "of a "
-       "server are kept in the cache folder",
+       "of a server are kept in the cache folder",
        &a.map_tiles},
       {"--map-crs",
        "Coordinate reference system of GT (x east, y north) for --map-tiles: \"EPSG:32632\", or "
