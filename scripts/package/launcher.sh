@@ -11,6 +11,8 @@ for libraries in "$root"/usr/lib/*-linux-gnu; do
   for link in "$root"/etc/alternatives/lib*.so.3-"${libraries##*/}"; do
     [ ! -L "$link" ] || path="$root$(dirname "$(readlink "$link")"):$path"
   done
+  # The database of coordinate reference systems; PROJ looks for it at the root of this system.
+  [ -n "$PROJ_DATA" ] || [ ! -d "$root/usr/share/proj" ] || export PROJ_DATA="$root/usr/share/proj"
   # The loader is the running executable then; children are started by this script again.
   export STILLPOINT_LAUNCHER="$launcher"
   exec "$libraries"/ld-linux-*.so.* --inhibit-cache --library-path "$path" "$root/usr/bin/stillpoint" "$@"
