@@ -222,14 +222,20 @@ check_project_include() { # WHERE FOLDER TARGET
   fi
 }
 
+declare -A place_of # header -> the files that may include it; empty without a rule
 check_library_include() { # WHERE FILE HEADER
   local rule pattern place
-  for rule in "${libraries[@]}"; do
-    read -r pattern place <<<"$rule"
-    [[ "$3" =~ ^$pattern ]] || continue
-    [[ "$2" =~ $place ]] || violation "$1" "$3 must only be included by files that match $place"
-    return 0 # the first rule that matches decides
-  done
+  if [[ -z "${place_of[$3]+known}" ]]; then
+    place_of[$3]=""
+    for rule in "${libraries[@]}"; do
+      read -r pattern place <<<"$rule"
+      [[ "$3" =~ ^$pattern ]] || continue
+      place_of[$3]="$place"
+      break # the first rule that matches decides
+    done
+  fi
+  place="${place_of[$3]}"
+  [[ -z "$place" || "$2" =~ $place ]] || violation "$1" "$3 must only be included by files that match $place"
 }
 
 while IFS=: read -r file line text; do

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Plants one violation at a time and expects scripts/layers.sh to name it.
+# Plants allowed and forbidden includes and expects scripts/layers.sh to name each of the latter.
 source "$(dirname "${BASH_SOURCE[0]}")/repo_checks.sh"
 
 tree_with_folders() {
@@ -16,19 +16,33 @@ tree_with_folders() {
     put "$header.h" '#pragma once'
   done
 }
-# allowed FILE INCLUDE
-allowed() {
-  put "$1" "#include $2"
-  expect_clean layers.sh "$2 in $1"
-  rm "$scratch/$1"
+# allowed FILE INCLUDE, forbidden FILE INCLUDE: collected, as each call of scripts/layers.sh reads the whole tree
+allowed_includes=() forbidden_includes=()
+allowed() { allowed_includes+=("$1 #include $2"); }
+forbidden() { forbidden_includes+=("$1 #include $2"); }
+# append PATH TEXT: adds a line to a file of the tree. Sets `place` to file:line
+append() {
+  mkdir -p "$scratch/${1%/*}"
+  printf '%s\n' "$2" >>"$scratch/$1"
+  place="$1:$(wc -l <"$scratch/$1")"
 }
-# forbidden FILE INCLUDE
-forbidden() {
-  put "$1" "#include $2"
-  expect_fault layers.sh "$1:1:" "$2 in $1"
-  rm "$scratch/$1"
+check_includes() {
+  local include output places=()
+  tree_with_folders
+  for include in "${allowed_includes[@]}"; do append "${include%% *}" "${include#* }"; done
+  expect_clean layers.sh "an allowed include"
+  append core/imu/alone.cpp '#include "core/frontend/tracker.h"'
+  expect_fault layers.sh "$place:" "a single forbidden include"
+  tree_with_folders
+  for include in "${forbidden_includes[@]}"; do
+    append "${include%% *}" "${include#* }"
+    places+=("$place")
+  done
+  output="$("$root/scripts/layers.sh" "$scratch" 2>&1)" && fail "no include is refused"
+  for include in "${!places[@]}"; do
+    [[ $'\n'"$output" == *$'\n'"${places[include]}: "* ]] || fail "not seen: ${forbidden_includes[include]}"
+  done
 }
-tree_with_folders
 
 # core
 allowed core/imu/a.cpp '"core/imu/buffer.h"'
@@ -143,4 +157,6 @@ forbidden core/backend/a.cpp '<thread>'
 forbidden core/pipeline/runners/sequential_runner.cpp '<thread>'
 forbidden bench/plan/a.cpp '<thread>'
 forbidden eval/io/a.cpp '<nlohmann/json.hpp>'
+
+check_includes
 finish
