@@ -31,5 +31,6 @@ tail -n 12 build/logs/ctest-asan.log
 [[ $sanitizers == clean ]] || cat build/logs/ctest-asan.log
 
 step "all tests of the release build (sanitizers: $sanitizers)"
-ctest --preset release --parallel 2
+# Three tests on two cores: those of clusters, servers and pages mostly wait.
+ctest --preset release --parallel 3
 [[ $sanitizers == clean ]]
