@@ -9,6 +9,7 @@
 
 #include "datasets/synthetic/render/lightmap.h"
 #include "datasets/synthetic/render/mover_tiles.h"
+#include "datasets/synthetic/render/surface_tiles.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -21,6 +22,8 @@ constexpr std::array<double, kLightSamples> kOffset_x{0.0, -0.45, 0.2, 0.25};
 constexpr std::array<double, kLightSamples> kOffset_y{0.0, -0.05, 0.4, -0.35};
 /// Sample times in units of the exposure time: mean 0, variance 1/12 as for a box shutter.
 constexpr std::array<double, kLightSamples> kSampleTimes{0.0, 0.0, -0.408, 0.408};
+/// Number of the sample's time among all different ones.
+constexpr std::array<std::size_t, kLightSamples> kTimeOfSample{0, 0, 1, 2};
 /// Added to the mip level before rounding down: averaging over the samples blends two levels (trilinear).
 constexpr std::array<float, kLightSamples> kLevelDither{0.625F, 0.125F, 0.875F, 0.375F};
 /// Each sample covers about half a pixel's width; a filter width of sqrt(1/2) px trades blur for aliasing.
@@ -76,12 +79,26 @@ struct FrameRenderer::Block {
   int row, column;
   [[nodiscard]] int row_of(int lane) const { return row + lane / kBlockColumns; }
   [[nodiscard]] int column_of(int lane) const { return column + lane % kBlockColumns; }
+  [[nodiscard]] std::size_t in_tile(int lane) const {
+    return static_cast<std::size_t>(row_of(lane) % Tile::kRows * Tile::kColumns +
+                                    column_of(lane) % Tile::kColumns);
+  }
 };
 
-/// Where a ray hits: texels, and irradiance.
-struct FrameRenderer::SurfacePoint {
-  Texture::Cell texels;
-  float light;
+/// A light sample of each pixel of a tile.
+struct FrameRenderer::LightSample {
+  Tile tile;
+  std::size_t number;
+  TileRays rays;
+  /// In camera coordinates, of length 1 along the optical axis. @param at pixel of the tile
+  [[nodiscard]] Eigen::Vector3f ray(std::size_t at) const { return {rays.x[at], rays.y[at], 1.0F}; }
+};
+
+/// A pixel of a tile.
+struct FrameRenderer::Hit {
+  const View* view;
+  Eigen::Vector3f ray;  ///< in camera coordinates, see LightSample::ray
+  std::size_t at;
 };
 
 struct FrameRenderer::Job {
@@ -90,9 +107,13 @@ struct FrameRenderer::Job {
   const RayTracer::Movers* movers;
   std::vector<std::array<View, kLightSamples>> views;  // per row
   std::vector<float> vertex_light;
-  std::vector<MoverTiles> tiles;  // one, or one per light sample
+  std::vector<MoverTiles> tiles;                // one, or one per light sample
+  std::span<const SurfaceTiles> quads, moving;  // one per sample time, or none: rays are traced
   [[nodiscard]] bool may_show_movers(const Block& block, std::size_t sample) const {
     return movers != nullptr && tiles[std::min(sample, tiles.size() - 1)].is_marked(block.row, block.column);
+  }
+  [[nodiscard]] const View& view(int row, std::size_t sample) const {
+    return views[views.size() == 1 ? 0 : static_cast<std::size_t>(row)][sample];
   }
 };
 
@@ -123,7 +144,7 @@ double sample_time_offset(int index) { return kSampleTimes[static_cast<std::size
 
 FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const Camera& camera)
     : world_(world), tracer_(tracer), camera_(camera) {
-  for (std::size_t at = 0; at < kLightSamples; ++at) {
+  for (std::size_t at = 0; camera.has_distortion() && at < kLightSamples; ++at) {
     const Eigen::Vector2d offset(kOffset_x[at], kOffset_y[at]);
     for (int row = 0; row < camera.height; ++row) {
       for (int column = 0; column < camera.width; ++column) {
@@ -133,52 +154,134 @@ FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const 
   }
 }
 
-RenderedFrame FrameRenderer::render(const Exposure& exposure, const MoverFrame* movers) const {
-  Job job{&exposure, movers, nullptr, {}, {}, {}};
+const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const MoverFrame* movers,
+                                           RenderBuffers& buffers) const {
+  Job job{&exposure, movers, nullptr, {}, {}, {}, {}, {}};
   for (const std::array<Pose, kLightSamples>& poses : exposure.poses) {
     std::array<View, kLightSamples> views;
     std::transform(poses.begin(), poses.end(), views.begin(), view_of);
     job.views.push_back(views);
   }
+  const bool has_movers = movers != nullptr && !movers->mesh.triangles.empty();
+  if (has_movers) {
+    for (std::size_t i = 0; i < movers->mesh.start.size(); ++i)
+      job.vertex_light.push_back(unshadowed_light(world_, movers->mesh.start[i], movers->normals[i]));
+  }
   std::optional<RayTracer::Movers> mover_scene;
-  if (movers != nullptr && !movers->mesh.triangles.empty()) {
+  if (exposure.poses.size() == 1 && !camera_.has_distortion() && world_.mesh.triangles.empty()) {
+    see_surfaces(exposure, has_movers ? &movers->mesh : nullptr, buffers);
+    job.quads = buffers.quads;
+    if (has_movers) job.moving = buffers.moving;
+  } else if (has_movers) {
     mover_scene.emplace(tracer_, movers->mesh);
     job.movers = &*mover_scene;
     job.tiles = mover_tiles(exposure, movers->mesh, camera_);
-    for (std::size_t i = 0; i < movers->mesh.start.size(); ++i) {
-      job.vertex_light.push_back(unshadowed_light(world_, movers->mesh.start[i], movers->normals[i]));
-    }
   }
+  RenderedFrame& frame = buffers.frame;
+  frame.width = camera_.width, frame.height = camera_.height;
   const auto pixels = static_cast<std::size_t>(std::ptrdiff_t{camera_.width} * camera_.height);
-  RenderedFrame frame{camera_.width,
-                      camera_.height,
-                      std::vector<Float4>(pixels),
-                      std::vector<float>(pixels),
-                      std::vector<std::uint16_t>(pixels),
-                      std::vector<float>(pixels)};
-  for (int row = 0; row < camera_.height; row += kBlockRows) {
-    for (int column = 0; column < camera_.width; column += kBlockColumns)
-      render_block(job, row, column, frame);
+  frame.radiance.resize(pixels);
+  frame.depth_m.assign(pixels, 0.0F);
+  frame.object.assign(pixels, 0);
+  frame.speed_m_per_s.assign(pixels, 0.0F);
+  for (int row = 0; row < camera_.height; row += Tile::kRows) {
+    for (int column = 0; column < camera_.width; column += Tile::kColumns)
+      render_tile(job, {row, column}, frame);
   }
   return frame;
 }
 
-RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) const {
+void FrameRenderer::see_surfaces(const Exposure& exposure, const MovingMesh* movers,
+                                 RenderBuffers& buffers) const {
+  constexpr std::size_t kTimes = *std::ranges::max_element(kTimeOfSample) + 1;
+  buffers.quads.resize(kTimes, SurfaceTiles(camera_));
+  buffers.moving.resize(kTimes, SurfaceTiles(camera_));
+  for (std::size_t i = 0; i < kLightSamples; ++i) {
+    if (i > 0 && kTimeOfSample[i] == kTimeOfSample[i - 1]) continue;
+    const Pose& T_w_c = exposure.poses.front()[i];
+    SurfaceTiles& quads = buffers.quads[kTimeOfSample[i]];
+    quads.see_quads(world_.quads, T_w_c);
+    if (movers == nullptr) continue;
+    buffers.moving[kTimeOfSample[i]].see_triangles(*movers, sample_time(exposure, 0, i), T_w_c, quads);
+  }
+}
+
+template <class Function>
+void FrameRenderer::for_each_pixel(const Tile& tile, Function&& function) const {
+  const int rows = std::min(Tile::kRows, camera_.height - tile.row);
+  const int columns = std::min(Tile::kColumns, camera_.width - tile.column);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column)
+      function(static_cast<std::size_t>(row * Tile::kColumns + column), tile.row + row, tile.column + column);
+  }
+}
+
+template <class Function>
+void FrameRenderer::for_each_block(const Tile& tile, Function&& function) const {
+  const int bottom = std::min(tile.row + Tile::kRows, camera_.height);
+  const int right = std::min(tile.column + Tile::kColumns, camera_.width);
+  for (int row = tile.row; row < bottom; row += kBlockRows) {
+    for (int column = tile.column; column < right; column += kBlockColumns) function(Block{row, column});
+  }
+}
+
+void FrameRenderer::render_tile(const Job& job, const Tile& tile, RenderedFrame& frame) const {
+  std::array<Float4, Tile::kPixels> light{};
+  TileHits hits;
+  for (std::size_t sample = 0; sample < kLightSamples; ++sample) {
+    const LightSample at{tile, sample, rays_through(tile, sample)};
+    find_surfaces(job, at, hits);
+    if (sample == 0) record_geometry(job, tile, hits, frame);
+    add_light(job, at, hits, light);
+  }
+  for_each_pixel(
+      tile, [&](std::size_t at, int row, int column) { frame.radiance[pixel_at(row, column)] = light[at]; });
+}
+
+TileRays FrameRenderer::rays_through(const Tile& tile, std::size_t sample) const {
+  TileRays rays;
+  for (int at = 0; at < Tile::kPixels; ++at) {
+    const int row = tile.row + at / Tile::kColumns, column = tile.column + at % Tile::kColumns;
+    const auto i = static_cast<std::size_t>(at);
+    if (!directions_[sample].empty()) {
+      const Eigen::Vector2f& point = directions_[sample][pixel_at(std::min(row, camera_.height - 1),
+                                                                  std::min(column, camera_.width - 1))];
+      rays.x[i] = point.x(), rays.y[i] = point.y();
+    } else {
+      rays.x[i] = static_cast<float>((column + kOffset_x[sample] - camera_.cx) / camera_.fx);
+      rays.y[i] = static_cast<float>((row + kOffset_y[sample] - camera_.cy) / camera_.fy);
+    }
+  }
+  return rays;
+}
+
+void FrameRenderer::find_surfaces(const Job& job, const LightSample& sample, TileHits& hits) const {
+  hits.clear();
+  if (!job.quads.empty()) {
+    job.quads[kTimeOfSample[sample.number]].find(sample.tile, sample.rays, hits);
+    if (!job.moving.empty()) job.moving[kTimeOfSample[sample.number]].find(sample.tile, sample.rays, hits);
+    return;
+  }
+  for_each_block(sample.tile, [&](const Block& block) {
+    RayPacket packet = aim(job, block, sample);
+    tracer_.trace(packet);
+    if (job.may_show_movers(block, sample.number)) job.movers->trace(packet);
+    store(packet, block, hits);
+  });
+}
+
+RayPacket FrameRenderer::aim(const Job& job, const Block& block, const LightSample& sample) const {
   RayPacket packet;
-  const std::vector<Eigen::Vector2f>& table = directions_[static_cast<std::size_t>(sample)];
   for (int lane = 0; lane < kPacket; ++lane) {
     const int row = std::min(block.row_of(lane), camera_.height - 1);
-    const int column = std::min(block.column_of(lane), camera_.width - 1);
-    const bool inside = row == block.row_of(lane) && column == block.column_of(lane);
-    const std::size_t pose_row = job.views.size() == 1 ? 0 : static_cast<std::size_t>(row);
-    const View& view = job.views[pose_row][static_cast<std::size_t>(sample)];
-    const Eigen::Vector2f& point =
-        table[static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column)];
-    const Eigen::Vector3f direction = view.R_w_c * Eigen::Vector3f(point.x(), point.y(), 1.0F);
+    const bool inside = row == block.row_of(lane) && block.column_of(lane) < camera_.width;
+    const View& view = job.view(row, sample.number);
+    const Eigen::Vector3f direction = view.R_w_c * sample.ray(block.in_tile(lane));
     packet.origin_x[lane] = view.p_w.x(), packet.direction_x[lane] = direction.x();
     packet.origin_y[lane] = view.p_w.y(), packet.direction_y[lane] = direction.y();
     packet.origin_z[lane] = view.p_w.z(), packet.direction_z[lane] = direction.z();
-    packet.time[lane] = sample_time(*job.exposure, pose_row, static_cast<std::size_t>(sample));
+    const std::size_t pose_row = job.views.size() == 1 ? 0 : static_cast<std::size_t>(row);
+    packet.time[lane] = sample_time(*job.exposure, pose_row, sample.number);
     packet.far[lane] = inside ? kFar_m : -1.0F;
     packet.primitive[lane] = -1;
     packet.moving[lane] = false;
@@ -186,100 +289,135 @@ RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) con
   return packet;
 }
 
-inline FrameRenderer::SurfacePoint FrameRenderer::surface_at(const Job& job, const RayPacket& packet,
-                                                             int lane, int sample) const {
-  const Eigen::Vector3f direction(packet.direction_x[lane], packet.direction_y[lane],
-                                  packet.direction_z[lane]);
-  const float u = packet.u[lane], v = packet.v[lane];
-  const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
-  // Footprint of half a pixel at the hit, stretched by the slant of the surface (geometric mean).
-  const float pixel_m = packet.far[lane] / static_cast<float>(camera_.fx);
-  const auto level_of = [&](float texels_per_m, const Eigen::Vector3f& normal) {
-    const float cosine = std::max(std::abs(normal.dot(direction)) / direction.norm(), 0.05F);
-    const float level =
-        approximate_log2(pixel_m * texels_per_m) - 0.5F * approximate_log2(cosine) + kLevelBias;
-    return std::max(0.0F, level + kLevelDither[static_cast<std::size_t>(sample)]);
-  };
-  if (!packet.moving[lane] && primitive >= world_.quads.size()) {
-    const MeshTriangle& triangle = world_.mesh.triangles[primitive - world_.quads.size()];
-    if (triangle.texture < 0) return {corner_colors(triangle, u, v), 1.0F};
-    const float w = 1.0F - u - v;
-    const Eigen::Vector2f st = w * triangle.uv[0] + u * triangle.uv[1] + v * triangle.uv[2];
-    return {world_.textures[static_cast<std::size_t>(triangle.texture)].cell_at(
-                st.x(), st.y(), level_of(triangle.texels_per_m, normal_of(world_.mesh, triangle))),
-            1.0F};
+void FrameRenderer::store(const RayPacket& packet, const Block& block, TileHits& hits) {
+  for (int lane = 0; lane < kPacket; ++lane) {
+    if (packet.primitive[lane] < 0) continue;
+    const std::size_t at = block.in_tile(lane);
+    hits.z[at] = packet.far[lane];  // the ray has length 1 along the optical axis
+    hits.u[at] = packet.u[lane];
+    hits.v[at] = packet.v[lane];
+    hits.primitive[at] = packet.primitive[lane];
+    hits.moving[at] = packet.moving[lane] ? 1 : 0;
   }
-  if (!packet.moving[lane]) {
+}
+
+/// What the light samples in the pixels of a tile show.
+struct FrameRenderer::TileTexels {
+  alignas(64) std::array<float, Tile::kPixels> texels_per_m{};
+  alignas(64) std::array<float, Tile::kPixels> height;  ///< distance of the plane from the camera [m]
+  alignas(64) std::array<float, Tile::kPixels> level;   ///< mip level
+  std::array<const Texture*, Tile::kPixels> texture;    ///< null: the colors of the corners of a triangle
+  std::array<float, Tile::kPixels> s, t;                ///< texture coordinates
+  std::array<float, Tile::kPixels> light;               ///< irradiance
+};
+
+void FrameRenderer::find_texels(const Job& job, const LightSample& sample, const TileHits& hits,
+                                TileTexels& texels) const {
+  std::int32_t last = -1;
+  float last_height = 0.0F;
+  for_each_pixel(sample.tile, [&](std::size_t at, int row, int) {
+    if (hits.primitive[at] < 0) return;
+    const View& view = job.view(row, sample.number);
+    const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
+    if (hits.moving[at] != 0 || primitive >= world_.quads.size()) {
+      last = -1;
+      find_triangle_texels(job, {&view, sample.ray(at), at}, hits, texels);
+      return;
+    }
     const Quad& quad = world_.quads[primitive];
-    return {
-        world_.textures[static_cast<std::size_t>(quad.texture)].cell_at(
-            quad.s + u * quad.s_per_u, quad.t + v * quad.t_per_v, level_of(quad.texels_per_m, quad.normal)),
-        baked_light(world_, quad, u, v)};
+    if (hits.primitive[at] != last || job.views.size() > 1)
+      last_height = quad.normal.dot(quad.origin - view.p_w);
+    last = hits.primitive[at];
+    texels.texels_per_m[at] = quad.texels_per_m;
+    texels.height[at] = last_height;
+    texels.texture[at] = &world_.textures[static_cast<std::size_t>(quad.texture)];
+    texels.s[at] = quad.s + hits.u[at] * quad.s_per_u;
+    texels.t[at] = quad.t + hits.v[at] * quad.t_per_v;
+    texels.light[at] = baked_light(world_, quad, hits.u[at], hits.v[at]);
+  });
+}
+
+void FrameRenderer::find_triangle_texels(const Job& job, const Hit& hit, const TileHits& hits,
+                                         TileTexels& texels) const {
+  const std::size_t at = hit.at;
+  const float u = hits.u[at], v = hits.v[at];
+  const auto blend = [w = 1.0F - u - v, u, v](const auto& a, const auto& b, const auto& c) {
+    return std::decay_t<decltype(a)>(w * a + u * b + v * c);
+  };
+  const auto set = [&](int texture, const std::array<Eigen::Vector2f, 3>& uv, float texels_per_m,
+                       const Eigen::Vector3f& normal) {
+    const Eigen::Vector2f st = blend(uv[0], uv[1], uv[2]);
+    texels.texture[at] = texture < 0 ? nullptr : &world_.textures[static_cast<std::size_t>(texture)];
+    texels.s[at] = st.x(), texels.t[at] = st.y();
+    texels.texels_per_m[at] = texels_per_m;
+    texels.height[at] = normal.dot(hit.view->R_w_c * hit.ray) * hits.z[at];
+  };
+  const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
+  if (hits.moving[at] == 0) {
+    const MeshTriangle& triangle = world_.mesh.triangles[primitive - world_.quads.size()];
+    set(triangle.texture, triangle.uv, triangle.texels_per_m, normal_of(world_.mesh, triangle));
+    texels.light[at] = 1.0F;
+    return;
   }
   const MoverTriangle& appearance = job.mover_frame->appearance[primitive];
-  const std::array<std::uint32_t, 3>& corners = job.mover_frame->mesh.triangles[primitive];
-  const float w = 1.0F - u - v;
-  const auto blend = [&](const auto& values) {
-    using Value = std::decay_t<decltype(values[0])>;
-    return Value(w * values[corners[0]] + u * values[corners[1]] + v * values[corners[2]]);
-  };
-  const Eigen::Vector3f normal = blend(job.mover_frame->normals).normalized();
-  const Eigen::Vector2f st = w * appearance.uv[0] + u * appearance.uv[1] + v * appearance.uv[2];
-  return {world_.textures[static_cast<std::size_t>(appearance.texture)].cell_at(
-              st.x(), st.y(), level_of(appearance.texels_per_m, normal)),
-          blend(job.vertex_light)};
+  const auto& [a, b, c] = job.mover_frame->mesh.triangles[primitive];
+  const auto& normals = job.mover_frame->normals;
+  set(appearance.texture, appearance.uv, appearance.texels_per_m,
+      blend(normals[a], normals[b], normals[c]).normalized());
+  texels.light[at] = blend(job.vertex_light[a], job.vertex_light[b], job.vertex_light[c]);
 }
 
-void FrameRenderer::render_block(const Job& job, int block_row, int block_column,
-                                 RenderedFrame& frame) const {
-  const Block block{block_row, block_column};
+/// Mip levels: the footprint of half a pixel at the hit, stretched by the slant of the surface (geometric
+/// mean). Without branches, so that the loop is executed in SIMD instructions.
+void FrameRenderer::find_levels(const LightSample& sample, const TileHits& hits, TileTexels& texels) const {
+  const float half_pixels_per_focal = 1.0F / static_cast<float>(camera_.fx);
+  const float bias = kLevelBias + kLevelDither[sample.number];
+  for (std::size_t at = 0; at < Tile::kPixels; ++at) {
+    const float x = sample.rays.x[at], y = sample.rays.y[at], z = hits.z[at];
+    const float distance = z * std::sqrt(x * x + y * y + 1.0F);
+    const float cosine = std::max(std::abs(texels.height[at]) / distance, 0.05F);
+    const float size = z * half_pixels_per_focal * texels.texels_per_m[at];
+    texels.level[at] = std::max(0.0F, approximate_log2(size) - 0.5F * approximate_log2(cosine) + bias);
+  }
+}
+
+void FrameRenderer::add_light(const Job& job, const LightSample& sample, const TileHits& hits,
+                              std::array<Float4, Tile::kPixels>& light) const {
+  TileTexels texels;
+  find_texels(job, sample, hits, texels);
+  find_levels(sample, hits, texels);
   // All texels are requested from memory before the first one is used.
-  std::array<std::array<SurfacePoint, kPacket>, kLightSamples> points;
-  std::array<std::uint32_t, kLightSamples> hits{};
-  for (int sample = 0; sample < kLightSamples; ++sample) {
-    RayPacket packet = aim(job, block, sample);
-    tracer_.trace(packet);
-    if (job.may_show_movers(block, static_cast<std::size_t>(sample))) job.movers->trace(packet);
-    const auto at = static_cast<std::size_t>(sample);
-    for (int lane = 0; lane < kPacket; ++lane) {
-      if (packet.primitive[lane] < 0) continue;
-      hits[at] |= 1U << lane;
-      SurfacePoint& point = points[at][static_cast<std::size_t>(lane)];
-      point = surface_at(job, packet, lane, sample);
-      __builtin_prefetch(point.texels.upper + point.texels.column);
-      __builtin_prefetch(point.texels.lower + point.texels.column);
+  std::array<Texture::Cell, Tile::kPixels> cells;
+  for_each_pixel(sample.tile, [&](std::size_t at, int, int) {
+    if (hits.primitive[at] < 0) return;
+    if (texels.texture[at] == nullptr) {
+      const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
+      cells[at] =
+          corner_colors(world_.mesh.triangles[primitive - world_.quads.size()], hits.u[at], hits.v[at]);
+    } else {
+      cells[at] = texels.texture[at]->cell_at(texels.s[at], texels.t[at], texels.level[at]);
     }
-    if (sample == 0) record_geometry(job, block, packet, frame);
-  }
-  std::array<Float4, kPacket> light{};
-  for (std::size_t sample = 0; sample < kLightSamples; ++sample) {
-    for (std::size_t lane = 0; lane < kPacket; ++lane) {
-      if ((hits[sample] >> lane & 1U) == 0) continue;
-      const SurfacePoint& point = points[sample][lane];
-      const Float4 root = point.texels.value();
-      light[lane] += root * root * point.light * (1.0F / kLightSamples);
-    }
-  }
-  for (int lane = 0; lane < kPacket; ++lane) {
-    const int row = block.row_of(lane), column = block.column_of(lane);
-    if (row >= camera_.height || column >= camera_.width) continue;
-    frame.radiance[static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column)] =
-        light[static_cast<std::size_t>(lane)];
-  }
+    __builtin_prefetch(cells[at].upper + cells[at].column);
+    __builtin_prefetch(cells[at].lower + cells[at].column);
+  });
+  for_each_pixel(sample.tile, [&](std::size_t at, int, int) {
+    if (hits.primitive[at] < 0) return;
+    const Float4 root = cells[at].value();
+    light[at] += root * root * texels.light[at] * (1.0F / kLightSamples);
+  });
 }
 
-void FrameRenderer::record_geometry(const Job& job, const Block& block, const RayPacket& packet,
+void FrameRenderer::record_geometry(const Job& job, const Tile& tile, const TileHits& hits,
                                     RenderedFrame& frame) const {
-  for (int lane = 0; lane < kPacket; ++lane) {
-    const int row = block.row_of(lane), column = block.column_of(lane);
-    if (packet.primitive[lane] < 0 || row >= camera_.height || column >= camera_.width) continue;
-    const auto pixel = static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column);
-    const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
-    frame.depth_m[pixel] = packet.far[lane];  // the direction has length 1 along the optical axis
-    if (!packet.moving[lane]) continue;
+  for_each_pixel(tile, [&](std::size_t at, int row, int column) {
+    if (hits.primitive[at] < 0) return;
+    const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
+    const std::size_t pixel = pixel_at(row, column);
+    frame.depth_m[pixel] = hits.z[at];
+    if (hits.moving[at] == 0) return;
     frame.object[pixel] = static_cast<std::uint16_t>(job.mover_frame->appearance[primitive].object);
     frame.speed_m_per_s[pixel] = displacement_m(job.mover_frame->mesh, primitive) / job.exposure->span_s;
-  }
+  });
 }
 
 }  // namespace stillpoint::synth

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/geometry/pose.h"
 #include "datasets/synthetic/render/ray_tracer.h"
+#include "datasets/synthetic/render/surface_tiles.h"
 #include "datasets/synthetic/render/world.h"
 
 namespace stillpoint::synth {
@@ -54,29 +55,59 @@ struct RenderedFrame {
   std::vector<float> speed_m_per_s;   ///< world-frame speed of the visible surface; 0 = static
 };
 
+/// Memory that is used again from frame to frame; one per thread.
+struct RenderBuffers {
+  RenderedFrame frame;
+  std::vector<SurfaceTiles> quads, moving;  ///< per sample time
+};
+
 /// Renders a world through one camera. `render` is thread-safe.
 class FrameRenderer {
  public:
   /// Stores references to `world` and `tracer`.
   FrameRenderer(const World& world, const RayTracer& tracer, const Camera& camera);
 
-  /// @param movers may be null
-  [[nodiscard]] RenderedFrame render(const Exposure& exposure, const MoverFrame* movers) const;
+  /// Without buffers, for few frames. @param movers may be null
+  [[nodiscard]] RenderedFrame render(const Exposure& exposure, const MoverFrame* movers) const {
+    RenderBuffers buffers;
+    render(exposure, movers, buffers);
+    return std::move(buffers.frame);
+  }
+
+  /// @param movers may be null @return `buffers.frame`
+  const RenderedFrame& render(const Exposure& exposure, const MoverFrame* movers,
+                              RenderBuffers& buffers) const;
 
  private:
   struct Block;
+  struct Hit;
   struct Job;
-  struct SurfacePoint;
-  void record_geometry(const Job& job, const Block& block, const RayPacket& packet,
-                       RenderedFrame& frame) const;
-  void render_block(const Job& job, int block_row, int block_column, RenderedFrame& frame) const;
-  [[nodiscard]] RayPacket aim(const Job& job, const Block& block, int sample) const;
-  [[nodiscard]] SurfacePoint surface_at(const Job& job, const RayPacket& packet, int lane, int sample) const;
+  struct LightSample;
+  struct TileTexels;
+  void see_surfaces(const Exposure& exposure, const MovingMesh* movers, RenderBuffers& buffers) const;
+  template <class Function>
+  void for_each_pixel(const Tile& tile, Function&& function) const;
+  template <class Function>
+  void for_each_block(const Tile& tile, Function&& function) const;
+  void render_tile(const Job& job, const Tile& tile, RenderedFrame& frame) const;
+  [[nodiscard]] TileRays rays_through(const Tile& tile, std::size_t sample) const;
+  void find_surfaces(const Job& job, const LightSample& sample, TileHits& hits) const;
+  [[nodiscard]] RayPacket aim(const Job& job, const Block& block, const LightSample& sample) const;
+  static void store(const RayPacket& packet, const Block& block, TileHits& hits);
+  void find_texels(const Job& job, const LightSample& sample, const TileHits& hits, TileTexels& texels) const;
+  void find_triangle_texels(const Job& job, const Hit& hit, const TileHits& hits, TileTexels& texels) const;
+  void find_levels(const LightSample& sample, const TileHits& hits, TileTexels& texels) const;
+  void add_light(const Job& job, const LightSample& sample, const TileHits& hits,
+                 std::array<Float4, Tile::kPixels>& light) const;
+  void record_geometry(const Job& job, const Tile& tile, const TileHits& hits, RenderedFrame& frame) const;
+  [[nodiscard]] std::size_t pixel_at(int row, int column) const {
+    return static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column);
+  }
 
   const World& world_;
   const RayTracer& tracer_;
   Camera camera_;
-  /// Normalized image coordinates (x, y) of every pixel, one table per light sample.
+  /// With distortion: normalized image coordinates (x, y) of every pixel, one table per light sample.
   std::array<std::vector<Eigen::Vector2f>, kLightSamples> directions_;
 };
 

@@ -8,6 +8,9 @@
 /// V: visibility, 0 or 1; E_a: ambient irradiance; A: cosine-weighted unoccluded fraction of the hemisphere.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+
 #include "datasets/synthetic/render/ray_tracer.h"
 #include "datasets/synthetic/render/world.h"
 
@@ -18,7 +21,19 @@ namespace stillpoint::synth {
                                      const Eigen::Vector3f& normal);
 
 /// Bilinear interpolation of the baked irradiance of a quad at (u, v) in [0, 1]^2.
-[[nodiscard]] float baked_light(const World& world, const Quad& quad, float u, float v);
+[[nodiscard]] inline float baked_light(const World& world, const Quad& quad, float u, float v) {
+  const float x = u * static_cast<float>(quad.light_columns - 1),
+              y = v * static_cast<float>(quad.light_rows - 1);
+  const int column = std::clamp(static_cast<int>(x), 0, quad.light_columns - 2);
+  const int row = std::clamp(static_cast<int>(y), 0, quad.light_rows - 2);
+  const float weight_x = x - static_cast<float>(column), weight_y = y - static_cast<float>(row);
+  const float* lower =
+      world.light.data() + quad.light_first + std::ptrdiff_t{row} * quad.light_columns + column;
+  const float* upper = lower + quad.light_columns;
+  const float bottom = lower[0] + (lower[1] - lower[0]) * weight_x;
+  const float top = upper[0] + (upper[1] - upper[0]) * weight_x;
+  return bottom + (top - bottom) * weight_y;
+}
 
 /// Computes `world.light` and the node grid of each quad in it.
 void bake_light(World& world, const RayTracer& tracer, std::uint64_t seed);

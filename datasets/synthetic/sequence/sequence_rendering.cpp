@@ -98,7 +98,8 @@ class SequenceRendering::Scenery {
   std::vector<VisibleObject> render(std::size_t index, const SequenceWriter& writer,
                                     const ImageCallback& on_images) const {
     const Timestamp t = times_.color[index];
-    const RenderedFrame frame = render_ideal_frame(t);
+    const BuffersOfFrame buffers(*this);
+    const RenderedFrame& frame = render_ideal_frame(t, *buffers);
     const double gain =
         setup_.scene.gain * exposure_gain(request_.color, seconds_between(times_.color.front(), t));
     const std::uint64_t color_key = random_key(request_.seed, RandomStream::kColorNoise, index);
@@ -121,16 +122,41 @@ class SequenceRendering::Scenery {
     FrameRenderer renderer;
   };
 
-  [[nodiscard]] RenderedFrame render_ideal_frame(Timestamp t) const {
+  /// Buffers that no other thread uses.
+  class BuffersOfFrame {
+   public:
+    explicit BuffersOfFrame(const Scenery& scenery) : scenery_(scenery) {
+      const std::scoped_lock lock(scenery_.pool_mutex_);
+      if (scenery_.pool_.empty()) {
+        buffers_ = std::make_unique<RenderBuffers>();
+      } else {
+        buffers_ = std::move(scenery_.pool_.back());
+        scenery_.pool_.pop_back();
+      }
+    }
+    ~BuffersOfFrame() {
+      const std::scoped_lock lock(scenery_.pool_mutex_);
+      scenery_.pool_.push_back(std::move(buffers_));
+    }
+    BuffersOfFrame(const BuffersOfFrame&) = delete;
+    BuffersOfFrame& operator=(const BuffersOfFrame&) = delete;
+    RenderBuffers& operator*() const { return *buffers_; }
+
+   private:
+    const Scenery& scenery_;
+    std::unique_ptr<RenderBuffers> buffers_;
+  };
+
+  const RenderedFrame& render_ideal_frame(Timestamp t, RenderBuffers& buffers) const {
     const double span_s = std::max(1e-3, request_.color.exposure_s + request_.rolling_shutter_s);
     const Exposure exposure = exposure_at(request_, setup_, t, span_s);
     const double middle_s = seconds_between(setup_.epoch, t);
     const FrameRenderer& renderer =
         changed_ && middle_s >= setup_.change_s ? changed_->renderer : initial_.renderer;
-    if (setup_.actors.empty()) return renderer.render(exposure, nullptr);
+    if (setup_.actors.empty()) return renderer.render(exposure, nullptr, buffers);
     const MoverFrame movers =
         assemble_movers(setup_.actors, middle_s - 0.5 * span_s, middle_s + 0.5 * span_s);
-    return renderer.render(exposure, &movers);
+    return renderer.render(exposure, &movers, buffers);
   }
 
   const SynthRequest& request_;
@@ -138,6 +164,8 @@ class SequenceRendering::Scenery {
   FrameTimes times_;
   WorldRenderer initial_;
   std::optional<WorldRenderer> changed_;
+  mutable std::mutex pool_mutex_;
+  mutable std::vector<std::unique_ptr<RenderBuffers>> pool_;  ///< one per thread that renders, at most
 };
 
 SequenceRendering::SequenceRendering(const SynthRequest& request, fs::path folder)

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 
 #include "datasets/synthetic/actors/actor.h"
+#include "datasets/synthetic/counter_random.h"
 #include "datasets/synthetic/motion/camera_motion.h"
 #include "datasets/synthetic/render/lightmap.h"
 #include "datasets/synthetic/render/mover_tiles.h"
@@ -128,6 +130,79 @@ TEST(FrameRenderer, MovingObjectsOccludeTheWorldAndAreLabeled) {
   // Its true half-width is 0.2 / 2 m * 140 px = 14 px: nothing is labeled 20 px away.
   EXPECT_EQ(frame.object[pixel + 20], 0);
   EXPECT_NEAR(frame.depth_m[pixel + 20], 3.0, 1e-4);
+}
+
+/// Boxes that stand beside and behind each other in a hall, with labels on some, under one lamp.
+World crowded_world() {
+  RandomSequence random(3);
+  World world;
+  Builder builder(world);
+  cv::Mat pattern(64, 64, CV_8UC3);
+  for (int i = 0; i < 64 * 64; ++i)
+    pattern.at<cv::Vec3b>(i / 64, i % 64) =
+        cv::Vec3b::all(static_cast<std::uint8_t>(60 + 40 * (i / 512 % 4)));
+  const int texture = builder.add_texture(pattern);
+  builder.add_surface({{-2.0, 12.0, 5.0}, {0.0, -24.0, 0.0}, {0.0, 0.0, -10.0}}, texture, 1.0);
+  builder.add_surface({{9.0, 12.0, 5.0}, {0.0, -24.0, 0.0}, {0.0, 0.0, -10.0}}, texture, 1.0);
+  for (int i = 0; i < 60; ++i) {
+    builder.set_frame({random.uniform(2.0, 8.0), random.uniform(-4.0, 4.0), random.uniform(-2.0, 1.0)},
+                      random.uniform(0.0, 6.0));
+    const double size = random.uniform(0.05, 0.6);
+    builder.add_box({0.0, 0.0, 0.0}, {size, 0.5 * size, size}, texture, 0.3);
+  }
+  world.lamps.push_back({.center = {4.0F, 0.0F, 4.0F}});
+  bake_light(world, RayTracer(world), 1);
+  return world;
+}
+
+// A camera with distortion is rendered by rays.
+TEST(FrameRenderer, RendersTheSameByTilesAsByRays) {
+  const World world = crowded_world();
+  const RayTracer tracer(world);
+  Camera traced = small_camera();
+  traced.distortion[0] = 1e-12;
+  for (const double turn : {-0.5, -0.1, 0.2, 0.6}) {
+    Exposure exposure = static_exposure({});
+    for (int i = 0; i < kLightSamples; ++i) {
+      const double angle = turn + 0.05 * sample_time_offset(i);
+      exposure.poses.front()[static_cast<std::size_t>(i)] =
+          Pose{camera_attitude(angle, 0.3 * turn, turn), {turn, -turn, 0.2 + 0.1 * turn}};
+    }
+    exposure.exposure_fraction_of_span = 1.0F;
+    const MoverFrame ball = moving_ball(turn);
+    const RenderedFrame tiles = FrameRenderer(world, tracer, small_camera()).render(exposure, &ball);
+    const RenderedFrame rays = FrameRenderer(world, tracer, traced).render(exposure, &ball);
+    int other_depths = 0, other_lights = 0, other_objects = 0, moving = 0;
+    for (std::size_t i = 0; i < rays.depth_m.size(); ++i) {
+      other_depths += std::abs(tiles.depth_m[i] - rays.depth_m[i]) > 1e-4F * rays.depth_m[i];
+      other_lights += std::abs(tiles.radiance[i][1] - rays.radiance[i][1]) > 1e-3F;
+      other_objects += tiles.object[i] != rays.object[i];
+      moving += rays.object[i] != 0;
+    }
+    // Rays through edges may hit either side.
+    EXPECT_LE(other_depths, 4);
+    EXPECT_LE(other_objects, 2);
+    EXPECT_LE(other_lights, 20) << "of 19200";
+    EXPECT_GT(moving, 20);
+  }
+}
+
+TEST(FrameRenderer, BuffersOfAnEarlierFrameDoNotShow) {
+  const World world = crowded_world();
+  const RayTracer tracer(world);
+  const FrameRenderer renderer(world, tracer, small_camera());
+  const MoverFrame ball = moving_ball(0.2);
+  const Pose pose{camera_attitude(0.1, 0.0, 0.0), {0.0, 0.0, 0.2}};
+  RenderBuffers buffers;
+  renderer.render(static_exposure({}), &ball, buffers);
+  const RenderedFrame& again = renderer.render(static_exposure(pose), nullptr, buffers);
+  const RenderedFrame alone = renderer.render(static_exposure(pose), nullptr);
+  EXPECT_EQ(again.depth_m, alone.depth_m);
+  EXPECT_EQ(again.object, alone.object);
+  EXPECT_EQ(again.speed_m_per_s, alone.speed_m_per_s);
+  EXPECT_TRUE(std::ranges::equal(again.radiance, alone.radiance, [](const Float4& a, const Float4& b) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+  }));
 }
 
 TEST(MoverTiles, MarksOnlyTilesNearTheMovingObject) {

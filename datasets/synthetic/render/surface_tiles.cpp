@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/render/surface_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace stillpoint::synth {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr float kFar_m = 1000.0F;
+constexpr float kSameDepth =
+    1.0F - 1e-5F;                      // ratio; coincident surfaces differ by less, labels on boxes by more
+constexpr float kSeam_m = 2e-5F;       // by which surfaces are larger, so that nothing shows between two
+constexpr float kNearest_m = 1e-3F;    // surfaces are clipped here
+constexpr float kDepthMargin = 1e-3F;  // relative; more than rounding errors of planes farther than
+constexpr float kEdgeOn_m = 0.02F;     // this from the camera
+constexpr float kMargin_px = 0.75F;    // light samples are up to 0.45 px beside the center of their pixel
+constexpr int kLanes = 8;              // pixels that are tested together
+constexpr float kFlat = 1e-12F;        // ratio of a squared area: a triangle without an inside
+
+/// Convex polygon in normalized image coordinates; a parallelogram or triangle, clipped by one plane.
+struct Polygon {
+  std::array<Vector2f, 5> points;
+  std::size_t count = 0;
+
+  void add(const Vector3f& p_c) { points[count++] = p_c.head<2>() / p_c.z(); }
+};
+
+template <std::size_t kCorners>
+Polygon clipped(const std::array<Vector3f, kCorners>& corners_c) {
+  Polygon polygon;
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const Vector3f &from = corners_c[i], &to = corners_c[(i + 1) % kCorners];
+    if (from.z() >= kNearest_m) polygon.add(from);
+    if ((from.z() >= kNearest_m) == (to.z() >= kNearest_m)) continue;
+    Vector3f crossing = from + (kNearest_m - from.z()) / (to.z() - from.z()) * (to - from);
+    crossing.z() = kNearest_m;
+    polygon.add(crossing);
+  }
+  return polygon;
+}
+
+float signed_area(const Polygon& polygon) {
+  float area = 0.0F;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const Vector2f &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
+    area += a.x() * b.y() - a.y() * b.x();
+  }
+  return area;
+}
+
+/// a x + b y + c in normalized image coordinates.
+struct Linear {
+  float a, b, c;
+
+  /// @return its smallest and largest value in the rectangle
+  [[nodiscard]] std::pair<float, float> range(const Vector2f& low, const Vector2f& high) const {
+    const float x_low = a * low.x(), x_high = a * high.x(), y_low = b * low.y(), y_high = b * high.y();
+    return {std::min(x_low, x_high) + std::min(y_low, y_high) + c,
+            std::max(x_low, x_high) + std::max(y_low, y_high) + c};
+  }
+};
+
+Linear edge_between(const Vector2f& from, const Vector2f& to, float orientation) {
+  const Vector2f along = orientation * (to - from);
+  return {-along.y(), along.x(), along.y() * from.x() - along.x() * from.y()};
+}
+
+/// See SeenSurface.
+SeenSurface seen_surface(const Vector3f& origin_c, const Vector3f& edge_u, const Vector3f& edge_v,
+                         std::int32_t number) {
+  const Vector3f cross = edge_u.cross(edge_v);
+  const Vector3f normal = cross.normalized();
+  const Vector3f dual_u = edge_v.cross(cross) / cross.squaredNorm();
+  const Vector3f dual_v = cross.cross(edge_u) / cross.squaredNorm();
+  return {.normal = normal,
+          .along_u = dual_u,
+          .along_v = dual_v,
+          .height = normal.dot(origin_c),
+          .u_0 = -dual_u.dot(origin_c),
+          .v_0 = -dual_v.dot(origin_c),
+          .seam_u = kSeam_m / edge_u.norm(),
+          .seam_v = kSeam_m / edge_v.norm(),
+          .number = number};
+}
+
+/// Tests some pixels of a row. Without branches, so that the loop is executed in SIMD instructions.
+template <bool kTriangle>
+void intersect(const SeenSurface& surface, std::size_t first, const TileRays& rays, TileHits& hits) {
+  const float low_u = -surface.seam_u, high_u = 1.0F + surface.seam_u;
+  const float low_v = -surface.seam_v, high_v = 1.0F + surface.seam_v;
+  const auto &n = surface.normal, &a_u = surface.along_u, &a_v = surface.along_v;
+  const float* const rays_x = rays.x.data() + first;
+  const float* const rays_y = rays.y.data() + first;
+  float* const hit_z = hits.z.data() + first;
+  float* const hit_u = hits.u.data() + first;
+  float* const hit_v = hits.v.data() + first;
+  std::int32_t* const hit_primitive = hits.primitive.data() + first;
+  std::int32_t* const hit_moving = hits.moving.data() + first;
+#pragma GCC ivdep
+  for (int i = 0; i < kLanes; ++i) {
+    const float x = rays_x[i], y = rays_y[i];
+    const float z = surface.height / (n.x() * x + (n.y() * y + n.z()));
+    const float u = surface.u_0 + z * (a_u.x() * x + (a_u.y() * y + a_u.z()));
+    const float v = surface.v_0 + z * (a_v.x() * x + (a_v.y() * y + a_v.z()));
+    const bool inside = kTriangle ? (u >= low_u) & (v >= low_v) & (u + v <= high_u)
+                                  : (u >= low_u) & (v >= low_v) & (u <= high_u) & (v <= high_v);
+    const bool is_hit = inside & (z > 0.0F) & (z < hit_z[i] * kSameDepth);
+    hit_z[i] = is_hit ? z : hit_z[i];
+    hit_u[i] = is_hit ? u : hit_u[i];
+    hit_v[i] = is_hit ? v : hit_v[i];
+    hit_primitive[i] = is_hit ? surface.number : hit_primitive[i];
+    if constexpr (kTriangle) hit_moving[i] = is_hit ? 1 : hit_moving[i];
+  }
+}
+
+/// Camera coordinates of points in the world.
+struct ToCamera {
+  Eigen::Matrix3f R_c_w;
+  Vector3f center;
+
+  explicit ToCamera(const Pose& T_w_c)
+      : R_c_w(T_w_c.R().transpose().cast<float>()), center(T_w_c.p.cast<float>()) {}
+  Vector3f operator()(const Vector3f& point) const { return R_c_w * (point - center); }
+};
+
+}  // namespace
+
+void TileHits::clear() {
+  z.fill(kFar_m);
+  primitive.fill(-1);
+  moving.fill(0);
+}
+
+/// A surface in the image: pixels that contain it, and its edges.
+struct SurfaceTiles::Outline {
+  std::array<Linear, 5> edges{};  ///< positive inside
+  std::size_t edge_count = 0;
+  int left, right, top, bottom;
+
+  Outline(const Polygon& polygon, const Camera& camera) : edge_count(polygon.count) {
+    Vector2f low = polygon.points[0], high = low;
+    const float orientation = signed_area(polygon) >= 0.0F ? 1.0F : -1.0F;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      const Vector2f& point = polygon.points[i];
+      low = low.cwiseMin(point), high = high.cwiseMax(point);
+      edges[i] = edge_between(point, polygon.points[(i + 1) % polygon.count], orientation);
+    }
+    const auto pixel = [](double center, int size) {
+      return static_cast<int>(std::clamp(std::floor(center), -1.0, static_cast<double>(size)));
+    };
+    left = std::max(0, pixel(low.x() * camera.fx + camera.cx - kMargin_px, camera.width));
+    right =
+        std::min(camera.width - 1, pixel(high.x() * camera.fx + camera.cx + kMargin_px + 1, camera.width));
+    top = std::max(0, pixel(low.y() * camera.fy + camera.cy - kMargin_px, camera.height));
+    bottom =
+        std::min(camera.height - 1, pixel(high.y() * camera.fy + camera.cy + kMargin_px + 1, camera.height));
+  }
+  [[nodiscard]] bool is_visible() const { return left <= right && top <= bottom; }
+};
+
+SurfaceTiles::SurfaceTiles(const Camera& camera)
+    : camera_(camera),
+      columns_((camera.width + Tile::kColumns - 1) / Tile::kColumns),
+      rows_((camera.height + Tile::kRows - 1) / Tile::kRows),
+      left_(static_cast<float>((camera.cx + 1.0) / camera.fx)),
+      right_(static_cast<float>((camera.width - camera.cx) / camera.fx)),
+      top_(static_cast<float>((camera.cy + 1.0) / camera.fy)),
+      bottom_(static_cast<float>((camera.height - camera.cy) / camera.fy)) {}
+
+void SurfaceTiles::see_quads(std::span<const Quad> quads, const Pose& T_w_c) {
+  moving_ = false;
+  seen_.clear(), entries_.clear();
+  covered_.assign(static_cast<std::size_t>(columns_ * rows_), 0.0F);
+  const ToCamera to_camera(T_w_c);
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    const Vector3f origin = to_camera(quads[i].origin);
+    const Vector3f edge_u = to_camera.R_c_w * quads[i].edge_u, edge_v = to_camera.R_c_w * quads[i].edge_v;
+    add(std::array<Vector3f, 4>{origin, origin + edge_u, origin + edge_u + edge_v, origin + edge_v},
+        static_cast<std::int32_t>(i));
+  }
+  sort_entries();
+}
+
+void SurfaceTiles::see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c,
+                                 const SurfaceTiles& before) {
+  moving_ = true;
+  seen_.clear(), entries_.clear();
+  covered_ = before.covered_;
+  const ToCamera to_camera(T_w_c);
+  points_c_.resize(mesh.start.size());
+  for (std::size_t i = 0; i < points_c_.size(); ++i)
+    points_c_[i] = to_camera(mesh.start[i] + time * (mesh.end[i] - mesh.start[i]));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    add(std::array{points_c_[a], points_c_[b], points_c_[c]}, static_cast<std::int32_t>(i));
+  }
+  sort_entries();
+}
+
+template <std::size_t kCorners>
+void SurfaceTiles::add(const std::array<Vector3f, kCorners>& corners_c, std::int32_t number) {
+  const auto beyond = [&](float x, float y, float z) {
+    return std::ranges::all_of(corners_c, [&](const Vector3f& p) { return p.dot(Vector3f(x, y, z)) < 0.0F; });
+  };
+  if (beyond(1, 0, left_) || beyond(-1, 0, right_) || beyond(0, 1, top_) || beyond(0, -1, bottom_)) return;
+  const Polygon polygon = clipped(corners_c);
+  if (polygon.count < 3) return;
+  const Outline outline(polygon, camera_);
+  const Vector3f edge_u = corners_c[1] - corners_c[0], edge_v = corners_c[kCorners - 1] - corners_c[0];
+  const float area = edge_u.cross(edge_v).squaredNorm();
+  if (!outline.is_visible() || area <= kFlat * edge_u.squaredNorm() * edge_v.squaredNorm()) return;
+  const SeenSurface seen = seen_surface(corners_c[0], edge_u, edge_v, number);
+  add_to_tiles(outline, seen);
+  seen_.push_back(seen);
+}
+
+void SurfaceTiles::add_to_tiles(const Outline& outline, const SeenSurface& seen) {
+  const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy);
+  const auto cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
+  const bool edge_on = std::abs(seen.height) < kEdgeOn_m;  // the inverse depth is not known well
+  const Vector3f plane = seen.normal / seen.height;
+  const Linear inverse_depth{plane.x(), plane.y(), plane.z()};
+  for (int row = outline.top / Tile::kRows; row <= outline.bottom / Tile::kRows; ++row) {
+    for (int column = outline.left / Tile::kColumns; column <= outline.right / Tile::kColumns; ++column) {
+      const int x = column * Tile::kColumns, y = row * Tile::kRows;
+      const Vector2f low((static_cast<float>(x) - kMargin_px - cx) / fx,
+                         (static_cast<float>(y) - kMargin_px - cy) / fy);
+      const Vector2f high((static_cast<float>(x + Tile::kColumns - 1) + kMargin_px - cx) / fx,
+                          (static_cast<float>(y + Tile::kRows - 1) + kMargin_px - cy) / fy);
+      bool covers = !edge_on, outside = false;
+      for (std::size_t i = 0; i < outline.edge_count; ++i) {
+        const auto [smallest, largest] = outline.edges[i].range(low, high);
+        covers = covers && smallest > 0.0F;
+        outside = outside || largest < 0.0F;
+      }
+      const auto [farthest, nearest] = inverse_depth.range(low, high);
+      const auto tile = static_cast<std::uint32_t>(row * columns_ + column);
+      if (outside || (!edge_on && nearest < covered_[tile])) continue;
+      entries_.push_back(
+          {.tile = tile,
+           .seen = static_cast<std::uint32_t>(seen_.size()),
+           .first_row = static_cast<std::uint8_t>(std::max(0, outline.top - y)),
+           .end_row = static_cast<std::uint8_t>(std::min(Tile::kRows, outline.bottom + 1 - y)),
+           .first_column = static_cast<std::uint8_t>(std::max(0, outline.left - x)),
+           .end_column = static_cast<std::uint8_t>(std::min(Tile::kColumns, outline.right + 1 - x)),
+           .nearest = edge_on ? std::numeric_limits<float>::infinity() : nearest});
+      if (covers) covered_[tile] = std::max(covered_[tile], farthest * (1.0F - kDepthMargin));
+    }
+  }
+}
+
+/// Sorts those that are not hidden.
+void SurfaceTiles::sort_entries() {
+  std::erase_if(entries_, [this](const Entry& entry) { return entry.nearest < covered_[entry.tile]; });
+  first_.assign(covered_.size() + 2, 0);
+  for (const Entry& entry : entries_) ++first_[entry.tile + 2];
+  for (std::size_t tile = 0; tile < covered_.size(); ++tile) first_[tile + 2] += first_[tile + 1];
+  sorted_.resize(entries_.size());
+  for (const Entry& entry : entries_) sorted_[first_[entry.tile + 1]++] = entry;  // then the end of the tile
+}
+
+void SurfaceTiles::find(const Tile& tile, const TileRays& rays, TileHits& hits) const {
+  const auto number =
+      static_cast<std::size_t>(tile.row / Tile::kRows * columns_ + tile.column / Tile::kColumns);
+  for (std::size_t i = first_[number]; i < first_[number + 1]; ++i) {
+    const Entry& entry = sorted_[i];
+    const SeenSurface& surface = seen_[entry.seen];
+    for (int row = entry.first_row; row < entry.end_row; ++row) {
+      for (int column = entry.first_column / kLanes * kLanes; column < entry.end_column; column += kLanes) {
+        const auto first = static_cast<std::size_t>(row * Tile::kColumns + column);
+        if (moving_) {
+          intersect<true>(surface, first, rays, hits);
+        } else {
+          intersect<false>(surface, first, rays, hits);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace stillpoint::synth

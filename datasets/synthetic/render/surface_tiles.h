@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Parallelograms and triangles in an image of a camera without distortion: which of them each part of the
+/// image may show, and the nearest one in each pixel, without rays.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/pose.h"
+#include "datasets/synthetic/render/ray_tracer.h"
+#include "datasets/synthetic/render/world.h"
+
+namespace stillpoint::synth {
+
+/// Part of an image: its upper left pixel.
+struct Tile {
+  static constexpr int kColumns = 16, kRows = 8, kPixels = kColumns * kRows;
+  int row, column;
+};
+
+/// Where the light samples in the pixels of a tile lie, in normalized image coordinates, in row-major order.
+struct TileRays {
+  alignas(64) std::array<float, Tile::kPixels> x, y;
+};
+
+/// What the light samples in the pixels of a tile show, in row-major order.
+struct TileHits {
+  alignas(64) std::array<float, Tile::kPixels> z;     ///< depth along the optical axis [m]
+  alignas(64) std::array<float, Tile::kPixels> u, v;  ///< coordinates in the surface
+  /// -1: nothing; in the world, triangles of its mesh follow the quads.
+  alignas(64) std::array<std::int32_t, Tile::kPixels> primitive;
+  /// 1: the primitive belongs to the moving mesh, not to the world.
+  alignas(64) std::array<std::int32_t, Tile::kPixels> moving;
+
+  void clear();
+};
+
+/// A parallelogram o + u e_u + v e_v, or the half of it with u + v <= 1, seen along (x, y, 1) in normalized
+/// image coordinates from p:
+///
+///   z = n . (o - p) / n . d,   u = a_u . (p - o) + z a_u . d,   v = a_v . (p - o) + z a_v . d
+///
+/// n: unit normal; d: direction in the world; a_u, a_v: dual basis of the edges. n . d, a_u . d and a_v . d
+/// are linear in x and y.
+struct SeenSurface {
+  Eigen::Vector3f normal, along_u, along_v;  ///< coefficients of x, y, 1 of n . d, a_u . d, a_v . d
+  float height, u_0, v_0;                    ///< n . (o - p), a_u . (p - o), a_v . (p - o)
+  float seam_u, seam_v;                      ///< how far u and v may lie outside
+  std::int32_t number;
+};
+
+/// Its memory is used again from image to image.
+class SurfaceTiles {
+ public:
+  /// @param camera without distortion
+  explicit SurfaceTiles(const Camera& camera);
+
+  /// Replaces all surfaces by the parallelograms of a world. @param T_w_c camera pose
+  void see_quads(std::span<const Quad> quads, const Pose& T_w_c);
+
+  /// Replaces all surfaces by the triangles of a moving mesh at a ray time, but for those that are hidden by
+  /// `before`, seen from the same pose.
+  void see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c, const SurfaceTiles& before);
+
+  /// Replaces hits by nearer ones; among surfaces at the same depth (to 1e-5), the one with the lowest
+  /// number. Surfaces nearer than 1 mm are not seen. @param rays at most 0.75 px beside the centers of their
+  /// pixels
+  void find(const Tile& tile, const TileRays& rays, TileHits& hits) const;
+
+ private:
+  /// A surface in a tile.
+  struct Entry {
+    std::uint32_t tile, seen;
+    std::uint8_t first_row, end_row, first_column, end_column;  ///< of the tile
+    float nearest;                                              ///< largest inverse depth in the tile [1/m]
+  };
+  struct Outline;
+  void clear();
+  template <std::size_t kCorners>
+  void add(const std::array<Eigen::Vector3f, kCorners>& corners_c, std::int32_t number);
+  void add_to_tiles(const Outline& outline, const SeenSurface& seen);
+  void sort_entries();
+
+  Camera camera_;
+  int columns_, rows_;
+  float left_, right_, top_, bottom_;  ///< sides of the image, in normalized coordinates, outward
+  bool moving_ = false;                ///< triangles of a moving mesh
+  std::vector<SeenSurface> seen_;
+  std::vector<Entry> entries_, sorted_;  ///< `sorted_` by tile and number
+  std::vector<float> covered_;           ///< per tile: inverse depth behind which everything is hidden [1/m]
+  std::vector<std::uint32_t> first_;     ///< per tile: in sorted_
+  std::vector<Eigen::Vector3f> points_c_;
+};
+
+}  // namespace stillpoint::synth
