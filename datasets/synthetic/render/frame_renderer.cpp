@@ -128,7 +128,7 @@ std::vector<MoverTiles> mover_tiles(const Exposure& exposure, const MovingMesh& 
   }
   std::vector<MoverTiles> tiles;
   for (std::size_t i = 0; i < kLightSamples; ++i) {
-    if (i > 0 && kSampleTimes[i] == kSampleTimes[i - 1]) {
+    if (i > 0 && kTimeOfSample[i] == kTimeOfSample[i - 1]) {
       tiles.push_back(tiles.back());
     } else {
       tiles.emplace_back(mesh, camera,
@@ -194,13 +194,13 @@ const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const Mover
 void FrameRenderer::see_surfaces(const Exposure& exposure, const MovingMesh* movers,
                                  RenderBuffers& buffers) const {
   constexpr std::size_t kTimes = *std::ranges::max_element(kTimeOfSample) + 1;
-  buffers.quads.resize(kTimes, SurfaceTiles(camera_));
-  buffers.moving.resize(kTimes, SurfaceTiles(camera_));
+  buffers.quads.resize(kTimes);
+  buffers.moving.resize(kTimes);
   for (std::size_t i = 0; i < kLightSamples; ++i) {
     if (i > 0 && kTimeOfSample[i] == kTimeOfSample[i - 1]) continue;
     const Pose& T_w_c = exposure.poses.front()[i];
     SurfaceTiles& quads = buffers.quads[kTimeOfSample[i]];
-    quads.see_quads(world_.quads, T_w_c);
+    quads.see_quads(world_.quads, camera_, T_w_c);
     if (movers == nullptr) continue;
     buffers.moving[kTimeOfSample[i]].see_triangles(*movers, sample_time(exposure, 0, i), T_w_c, quads);
   }

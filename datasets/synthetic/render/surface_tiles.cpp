@@ -164,18 +164,20 @@ struct SurfaceTiles::Outline {
   [[nodiscard]] bool is_visible() const { return left <= right && top <= bottom; }
 };
 
-SurfaceTiles::SurfaceTiles(const Camera& camera)
-    : camera_(camera),
-      columns_((camera.width + Tile::kColumns - 1) / Tile::kColumns),
-      rows_((camera.height + Tile::kRows - 1) / Tile::kRows),
-      left_(static_cast<float>((camera.cx + 1.0) / camera.fx)),
-      right_(static_cast<float>((camera.width - camera.cx) / camera.fx)),
-      top_(static_cast<float>((camera.cy + 1.0) / camera.fy)),
-      bottom_(static_cast<float>((camera.height - camera.cy) / camera.fy)) {}
-
-void SurfaceTiles::see_quads(std::span<const Quad> quads, const Pose& T_w_c) {
-  moving_ = false;
+void SurfaceTiles::begin(const Camera& camera) {
+  camera_ = camera;
+  columns_ = (camera.width + Tile::kColumns - 1) / Tile::kColumns;
+  rows_ = (camera.height + Tile::kRows - 1) / Tile::kRows;
+  left_ = static_cast<float>((camera.cx + 1.0) / camera.fx);
+  right_ = static_cast<float>((camera.width - camera.cx) / camera.fx);
+  top_ = static_cast<float>((camera.cy + 1.0) / camera.fy);
+  bottom_ = static_cast<float>((camera.height - camera.cy) / camera.fy);
   seen_.clear(), entries_.clear();
+}
+
+void SurfaceTiles::see_quads(std::span<const Quad> quads, const Camera& camera, const Pose& T_w_c) {
+  begin(camera);
+  moving_ = false;
   covered_.assign(static_cast<std::size_t>(columns_ * rows_), 0.0F);
   const ToCamera to_camera(T_w_c);
   for (std::size_t i = 0; i < quads.size(); ++i) {
@@ -189,8 +191,8 @@ void SurfaceTiles::see_quads(std::span<const Quad> quads, const Pose& T_w_c) {
 
 void SurfaceTiles::see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c,
                                  const SurfaceTiles& before) {
+  begin(before.camera_);
   moving_ = true;
-  seen_.clear(), entries_.clear();
   covered_ = before.covered_;
   const ToCamera to_camera(T_w_c);
   points_c_.resize(mesh.start.size());

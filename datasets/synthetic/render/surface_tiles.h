@@ -57,14 +57,12 @@ struct SeenSurface {
 /// Its memory is used again from image to image.
 class SurfaceTiles {
  public:
-  /// @param camera without distortion
-  explicit SurfaceTiles(const Camera& camera);
-
-  /// Replaces all surfaces by the parallelograms of a world. @param T_w_c camera pose
-  void see_quads(std::span<const Quad> quads, const Pose& T_w_c);
+  /// Replaces all surfaces by the parallelograms of a world. @param camera without distortion @param T_w_c
+  /// its pose
+  void see_quads(std::span<const Quad> quads, const Camera& camera, const Pose& T_w_c);
 
   /// Replaces all surfaces by the triangles of a moving mesh at a ray time, but for those that are hidden by
-  /// `before`, seen from the same pose.
+  /// `before`, seen by the same camera from the same pose.
   void see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c, const SurfaceTiles& before);
 
   /// Replaces hits by nearer ones; among surfaces at the same depth (to 1e-5), the one with the lowest
@@ -80,16 +78,17 @@ class SurfaceTiles {
     float nearest;                                              ///< largest inverse depth in the tile [1/m]
   };
   struct Outline;
-  void clear();
+  void begin(const Camera& camera);
   template <std::size_t kCorners>
   void add(const std::array<Eigen::Vector3f, kCorners>& corners_c, std::int32_t number);
   void add_to_tiles(const Outline& outline, const SeenSurface& seen);
   void sort_entries();
 
   Camera camera_;
-  int columns_, rows_;
-  float left_, right_, top_, bottom_;  ///< sides of the image, in normalized coordinates, outward
-  bool moving_ = false;                ///< triangles of a moving mesh
+  int columns_ = 0, rows_ = 0;
+  float left_ = 0.0F, right_ = 0.0F, top_ = 0.0F,
+        bottom_ = 0.0F;  ///< sides of the image, in normalized coordinates, outward
+  bool moving_ = false;  ///< triangles of a moving mesh
   std::vector<SeenSurface> seen_;
   std::vector<Entry> entries_, sorted_;  ///< `sorted_` by tile and number
   std::vector<float> covered_;           ///< per tile: inverse depth behind which everything is hidden [1/m]
