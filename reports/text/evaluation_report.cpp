@@ -317,6 +317,19 @@ Json hand_eye_json(const eval::HandEye& found) {
           {"rotation_rmse_deg", found.rotation_rmse_deg}};
 }
 
+std::string time_offset_text(const eval::TimeOffset& found) {
+  return fmt::format("offset {:+.5f} s (ATE {:.6f} m; {:.6f} m without offset)", found.offset_s,
+                     found.ate_rmse_m, found.ate_rmse_at_zero_m);
+}
+
+Json time_offset_json(const eval::TimeOffset& found) {
+  return {{"offset_s", found.offset_s},
+          {id(metric_id::kAte), found.ate_rmse_m},
+          {"ate_rmse_m_without_offset",
+           number(std::isfinite(found.ate_rmse_at_zero_m) ? std::optional(found.ate_rmse_at_zero_m)
+                                                          : std::nullopt)}};
+}
+
 Json evaluation_json(const eval::Evaluation& evaluation) {
   Json json{{"protocol", evaluation.protocol},
             {"version", evaluation.version},

@@ -11,6 +11,7 @@
 
 #include "eval/compare/common_support.h"
 #include "eval/compare/hand_eye.h"
+#include "eval/compare/time_offset.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/consistency.h"
 #include "eval/openloris/benchmark.h"
@@ -28,6 +29,7 @@ struct EvaluatedRun {
   std::vector<std::string> warnings = {};  ///< conventions that the estimate seems to violate
   std::optional<eval::CovarianceScore> covariance = std::nullopt;  ///< of estimates that bring covariances
   std::optional<eval::HandEye> hand_eye = std::nullopt;            ///< applied to `est`
+  std::optional<eval::TimeOffset> time_offset = std::nullopt;      ///< estimated, not applied
 };
 
 /// One row per estimate and protocol; "n/a" without data. Coverage precedes the errors. An RPE of few pairs
@@ -45,6 +47,10 @@ struct EvaluatedRun {
 /// Body transform and time offset, and the errors that they leave.
 [[nodiscard]] std::string hand_eye_text(const eval::HandEye& found);
 [[nodiscard]] nlohmann::ordered_json hand_eye_json(const eval::HandEye& found);
+
+/// The offset, and the ATE with it and without.
+[[nodiscard]] std::string time_offset_text(const eval::TimeOffset& found);
+[[nodiscard]] nlohmann::ordered_json time_offset_json(const eval::TimeOffset& found);
 
 /// The ranking on the common support; few RPE pairs are marked as in `evaluation_table`.
 [[nodiscard]] std::string comparison_table(const eval::Comparison& comparison, TableStyle style);

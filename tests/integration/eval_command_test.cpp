@@ -420,6 +420,21 @@ TEST(EvalCommand, AnOffsetThatIsAppliedIsNoWarning) {
             std::string::npos);
 }
 
+TEST(EvalCommand, AnOffsetThatIsFoundLeavesTablesForProgramsValid) {
+  const PathFiles files;
+  Trajectory path = test::smooth_path(401, 0.05);
+  for (StampedPose& pose : path.poses) pose.t = after(pose.t, 0.3);
+  const std::string late = files.folder.write("late.txt", eval::format_tum(path)).string();
+  const nlohmann::json json = eval_json({files.gt, late}, {"--find-offset"});
+  EXPECT_NEAR(json.at("time_offset").at("offset_s"), -0.3, 0.01);
+  EXPECT_GT(json.at("time_offset").at("ate_rmse_m_without_offset"), json.at("time_offset").at("ate_rmse_m"));
+  EXPECT_NE(run_program({"eval", files.gt, late, "--find-offset"}).out.find("offset -0.3"),
+            std::string::npos);
+  const ProgramResult csv = run_program({"eval", files.gt, late, "--find-offset", "--csv"});
+  EXPECT_EQ(csv.out.find("offset"), std::string::npos) << csv.out;
+  EXPECT_NE(csv.err.find("late.txt: offset -0.3"), std::string::npos) << csv.err;
+}
+
 TEST(EvalOpenlorisCommand, PrintsTheSceneTableAndDrawsTheFigure) {
   const TemporaryFolder folder;
   const eval::OpenlorisFile truth{

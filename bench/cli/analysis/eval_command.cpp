@@ -216,15 +216,13 @@ OutputRules output_rules(const EvalArguments& arguments) {
   return rules;
 }
 
-void print_offsets(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
-  for (const report::EvaluatedRun& run : runs) {
-    const std::optional<eval::TimeOffset> found = eval::find_time_offset(gt, run.est);
-    if (!found) throw InputError(run.name, "too few poses to estimate a time offset");
-    if (!found->undetermined.empty())
-      throw InputError(run.name, "time offset not determined: " + found->undetermined);
-    std::cout << fmt::format("{}: offset {:+.5f} s (ATE {:.6f} m; {:.6f} m without offset)\n", run.name,
-                             found->offset_s, found->ate_rmse_m, found->ate_rmse_at_zero_m);
-  }
+/// @throws InputError if it is not determined
+eval::TimeOffset time_offset_of(const Trajectory& gt, const report::EvaluatedRun& run) {
+  const std::optional<eval::TimeOffset> found = eval::find_time_offset(gt, run.est);
+  if (!found) throw InputError(run.name, "too few poses to estimate a time offset");
+  if (!found->undetermined.empty())
+    throw InputError(run.name, "time offset not determined: " + found->undetermined);
+  return *found;
 }
 
 /// Freed buffers of 10^6 numbers are used again instead of returned to the system, which would have to clear
@@ -247,13 +245,15 @@ int evaluate_files(const EvalArguments& arguments) {
   std::vector<PoseFile> files = with_consistent_orders(read_pose_files(arguments.files), arguments.offset_s);
   const eval::LoadedTrajectory& truth = files.front().loaded;
   const Trajectory& gt = truth.trajectory;
-  const std::vector<report::EvaluatedRun> runs = evaluate_all(arguments, files);
+  std::vector<report::EvaluatedRun> runs = evaluate_all(arguments, files);
+  if (arguments.find_offset) {
+    for (report::EvaluatedRun& run : runs) run.time_offset = time_offset_of(gt, run);
+  }
   if (arguments.json) {
     std::cout << evaluation_document(arguments, truth, runs).dump(2) << '\n';
   } else {
     print_evaluations(arguments, gt, runs);
   }
-  if (arguments.find_offset) print_offsets(gt, runs);
   write_figures(arguments, gt, runs, rules);
   if (!arguments.per_pose.empty()) write_output(arguments.per_pose, report::per_pose_csv(runs), rules);
   return std::ranges::any_of(runs, has_failed) ? kExitFindings : kExitOk;

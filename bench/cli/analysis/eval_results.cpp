@@ -194,10 +194,11 @@ nlohmann::ordered_json evaluation_document(const EvalArguments& arguments,
     for (const eval::Evaluation& evaluation : run.evaluations)
       json["evaluations"].push_back(report::evaluation_json(evaluation));
     if (run.hand_eye) json["hand_eye"] = report::hand_eye_json(*run.hand_eye);
+    if (run.time_offset) json["time_offset"] = report::time_offset_json(*run.time_offset);
     if (run.covariance) json["covariance"] = report::covariance_json(*run.covariance);
     list.push_back(std::move(json));
   }
-  Json json{{"schema", 2}};
+  Json json{{"schema", 3}};
   if (list.size() == 1) {
     json.update(list.front());
   } else {
@@ -233,6 +234,11 @@ void print_evaluations(const EvalArguments& arguments, const Trajectory& gt,
               << report::comparison_table(comparison, style);
   }
   if (arguments.explain) std::cout << '\n' << report::explanation_text(runs);
+  for (const report::EvaluatedRun& run : runs) {
+    if (!run.time_offset) continue;
+    const std::string text = fmt::format("{}: {}\n", run.name, report::time_offset_text(*run.time_offset));
+    (style == report::TableStyle::kCsv ? std::cerr : std::cout) << text;
+  }
   for (const report::EvaluatedRun& run : runs) {
     for (const eval::Evaluation& evaluation : run.evaluations) {
       for (const std::string& note : evaluation.notes) {
