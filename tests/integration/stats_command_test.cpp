@@ -2,6 +2,7 @@
 // `stillpoint stats`: selection of runs, number of values, and missing intervals.
 #include <cmath>
 #include <fstream>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -237,6 +238,65 @@ TEST_F(StatsCommand, ImperfectionsAreGeometricMeansOverSequences) {
   EXPECT_NEAR(all.at("ate_ratio"), std::sqrt(8.0), 1e-12);
   EXPECT_EQ(all.at("worst_ate_rmse_m"), 0.16);
   EXPECT_NEAR(all.at("false_confidence"), 0.03, 1e-15);
+}
+
+// A lost run has the error of the part that it covers, which is no measure for others.
+TEST_F(StatsCommand, ImperfectionsAreNotRelativeToALostRun) {
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan plan{.name = "rigs", .title = "", .text = "variants = [\"vo\"]\n", .run_keys = {}};
+  for (const auto& [sequence, coverage, ate_m] : {std::tuple{"a", 0.1, 0.001},
+                                                  {"a + rig:seed=1", 1.0, 0.02},
+                                                  {"b", 1.0, 0.01},
+                                                  {"b + rig:seed=1", 1.0, 0.02}}) {
+    const bench::RunIdentity identity{.variant = "vo", .sequence = sequence};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", ate_m}, {"coverage", "", "", coverage}}});
+    plan.run_keys.push_back(bench::run_key(identity));
+  }
+  writer.record_plan(plan);
+  const nlohmann::json rows =
+      nlohmann::json::parse(stats({"imperfections", "--plan", "rigs", "--format", "json"}).out).at("rows");
+  EXPECT_NEAR(rows.back().at("ate_ratio"), 2.0, 1e-12);
+}
+
+TEST_F(StatsCommand, FaultTotalsAreThoseOfTheRunsThatEnded) {
+  const std::string text =
+      "variants = [\"vo\"]\nfaults = [\"blank:start=1,duration=1\"]\nexpected = [\"survive\"]\n"
+      "[rendered]\nsequences = [\"market\", \"corridor\"]\n";
+  const std::string plan = (folder_.path() / "crashes.toml").string();
+  std::ofstream(plan) << text;
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan stored{.name = "crashes", .title = "", .text = text, .run_keys = {}};
+  const auto add = [&](const std::string& sequence, const bench::RunOutcome& outcome) {
+    const bench::RunIdentity identity{.variant = "vo", .sequence = sequence + " + blank:start=1,duration=1"};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, outcome);
+    stored.run_keys.push_back(bench::run_key(identity));
+  };
+  add("market", {.metrics = {{"false_confidence", "", "", 0.3}, {"missed_availability", "", "", 0.2}}});
+  add("corridor", {.outcome = bench::Outcome::kCrashed});
+  writer.record_plan(stored);
+  const ProgramResult result = stats({"faults", "--plan", plan});
+  EXPECT_NE(result.out.find("30.00 %"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("20.00 %"), std::string::npos) << result.out;
+}
+
+// As in a summary.
+TEST_F(StatsCommand, ASweepNamesCopiesAndRunsWithoutAValue) {
+  bench::StoreWriter writer(file_);
+  for (int seed = 1; seed <= 3; ++seed) {
+    const bench::RunIdentity identity{
+        .variant = "vo", .sequence = "a", .seed = seed, .axis = "window.size", .axis_value = 5.0};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = seed == 3 ? std::vector<bench::Metric>{{"coverage", "", "", 1.0}}
+                                                  : std::vector<bench::Metric>{{"ate_rmse_m", "", "m", 0.01}},
+                             .attachments = {{"trajectory", seed == 3 ? "" : "1 0 0 0 0 0 0 1\n"}}});
+  }
+  const ProgramResult summary = stats({"summary"}), sweep = stats({"sweep"});
+  for (const char* const note : {"copies", "No finite value"}) {
+    EXPECT_NE(summary.out.find(note), std::string::npos) << summary.out << summary.err;
+    EXPECT_NE(sweep.out.find(note), std::string::npos) << sweep.out << sweep.err;
+  }
 }
 
 TEST_F(StatsCommand, RejectsAMetricThatNoRunHas) {

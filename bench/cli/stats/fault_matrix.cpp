@@ -49,7 +49,8 @@ struct FaultTally {
   int runs = 0;
   int as_expected = 0;
   int late = 0;                      ///< runs in which a wrong pose was called located for too long
-  double false_confidence = 0.0;     ///< sum over runs of the same length
+  int scored = 0;                    ///< runs whose frames were scored: not those that crashed
+  double false_confidence = 0.0;     ///< sum over the scored runs, which have the same length
   double missed_availability = 0.0;  ///< same
 };
 
@@ -93,7 +94,10 @@ void count(const MatrixRun& one, FaultTally& tally) {
   ++tally.runs;
   tally.as_expected += one.outcome.as_expected;
   tally.late += metric_value(*one.run, metric_id::kTimeToDetect).value_or(0.0) > kMaxTimeToDetect_s;
-  tally.false_confidence += metric_value(*one.run, metric_id::kFalseConfidence).value_or(0.0);
+  const std::optional<double> wrong = metric_value(*one.run, metric_id::kFalseConfidence);
+  if (!wrong) return;
+  ++tally.scored;
+  tally.false_confidence += *wrong;
   tally.missed_availability += metric_value(*one.run, metric_id::kMissedAvailability).value_or(0.0);
 }
 
@@ -181,11 +185,12 @@ class FaultMatrix {
     for (std::size_t v = 0; v < tallies_.size(); ++v) {
       const FaultTally& tally = tallies_[v];
       if (tally.runs == 0) continue;  // of another group
-      const double runs = std::max(1, tally.runs);
+      const auto mean_text = [&](double sum) {
+        return tally.scored > 0 ? fmt::format("{:.2f} %", 100.0 * sum / tally.scored) : std::string("n/a");
+      };
       rows.push_back({variants_[v], fmt::format("{}", tally.runs),
-                      fmt::format("{} ({:.0f} %)", tally.as_expected, 100.0 * tally.as_expected / runs),
-                      fmt::format("{:.2f} %", 100.0 * tally.false_confidence / runs),
-                      fmt::format("{:.2f} %", 100.0 * tally.missed_availability / runs),
+                      fmt::format("{} ({:.0f} %)", tally.as_expected, 100.0 * tally.as_expected / tally.runs),
+                      mean_text(tally.false_confidence), mean_text(tally.missed_availability),
                       fmt::format("{}", tally.late), claim_text(group_, variants_[v], sequences_)});
     }
     return rows;

@@ -22,14 +22,21 @@ std::string fault_of(const StoredRun& run) {
   return end == std::string::npos ? "" : run.identity.sequence.substr(end + kFaultSeparator.size());
 }
 
-/// ATE of the run with the same sequence, seed, repetition and variant, but without a fault.
+/// The ATE; nullopt if the run is lost.
+std::optional<double> ate_if_located(const StoredRun& run) {
+  const double coverage = metric_value(run, metric_id::kCoverage).value_or(1.0);
+  if (run.outcome != Outcome::kOk || coverage < kMinCoverage) return std::nullopt;
+  return metric_value(run, metric_id::kAte);
+}
+
+/// `ate_if_located` of the run with the same sequence, seed, repetition and variant, but without a fault.
 std::optional<double> undisturbed_ate(const RunGroup& group, const StoredRun& run) {
   const std::string sequence = run.identity.sequence.substr(0, run.identity.sequence.find(kFaultSeparator));
   const auto found = std::ranges::find_if(group.runs, [&](const StoredRun& other) {
     return other.identity.sequence == sequence && other.identity.variant == run.identity.variant &&
            other.identity.seed == run.identity.seed && other.identity.repetition == run.identity.repetition;
   });
-  return found == group.runs.end() ? std::nullopt : metric_value(*found, metric_id::kAte);
+  return found == group.runs.end() ? std::nullopt : ate_if_located(*found);
 }
 
 class Mean {
@@ -53,9 +60,8 @@ struct FaultMeans {
   void add(const RunGroup& group, const StoredRun& run) {
     ++runs;
     if (const auto wrong = metric_value(run, metric_id::kFalseConfidence)) false_confidence.add(*wrong);
-    const std::optional<double> ate_m = metric_value(run, metric_id::kAte);
-    const double coverage = metric_value(run, metric_id::kCoverage).value_or(1.0);
-    if (run.outcome != Outcome::kOk || !ate_m || coverage < kMinCoverage) {
+    const std::optional<double> ate_m = ate_if_located(run);
+    if (!ate_m) {
       ++lost;
       return;
     }

@@ -111,6 +111,16 @@ SpreadRows spread_rows(const RunSelection& selection, const std::string& metric,
   return result;
 }
 
+/// The notes of a table of spreads: what its values are, and why some count less than others.
+std::vector<std::string> spread_notes(const SpreadRows& rows, const RunSelection& selection,
+                                      const std::string& metric) {
+  std::vector<std::string> notes = {metric + "; n: different results with a value.",
+                                    interval_note(kMedianTest, rows.counts)};
+  if (rows.copies > 0) notes.push_back(copies_note(rows.copies, "runs"));
+  if (rows.without_value > 0) notes.push_back(without_value_note(rows.without_value, "succeeded runs"));
+  return with_left_out(with_doubts(std::move(notes), rows.doubts), selection);
+}
+
 }  // namespace
 
 int stats_summary(const StatsArguments& arguments) {
@@ -118,16 +128,13 @@ int stats_summary(const StatsArguments& arguments) {
   const RunSelection selection = chosen_runs(store, arguments);
   SpreadRows rows = spread_rows(
       selection, arguments.metric, [](const RunSpread&) { return true; }, summary_cells);
-  std::vector<std::string> notes = {arguments.metric + "; n: different results with a value.",
-                                    interval_note(kMedianTest, rows.counts)};
-  if (rows.copies > 0) notes.push_back(copies_note(rows.copies, "runs"));
-  if (rows.without_value > 0) notes.push_back(without_value_note(rows.without_value, "succeeded runs"));
+  std::vector<std::string> notes = spread_notes(rows, selection, arguments.metric);
   print_stats({.header = {"sequence", "variant", "sweep", "runs", "failed", "n", "median", "median 95 %",
                           "quartiles", "worst", "modes"},
                .kind = "stats_summary",
                .columns = spread_columns(),
                .groups = std::move(rows.groups),
-               .notes = with_left_out(with_doubts(std::move(notes), rows.doubts), selection)},
+               .notes = std::move(notes)},
               arguments);
   return kExitOk;
 }
@@ -139,16 +146,14 @@ int stats_sweep(const StatsArguments& arguments) {
       selection, arguments.metric, [](const RunSpread& row) { return !row.axis.empty(); }, sweep_cells);
   if (rows.groups.empty())
     throw InputError(arguments.store, "contains no run of a sweep; add a [sweep] to a plan");
-  print_stats(
-      {.header = {"axis", "value", "sequence", "variant", "runs", "failed", "n", "median", "median 95 % low",
-                  "high"},
-       .kind = "stats_sweep",
-       .columns = spread_columns(),
-       .groups = std::move(rows.groups),
-       .notes = with_left_out(
-           with_doubts({arguments.metric + ".", interval_note(kMedianTest, rows.counts)}, rows.doubts),
-           selection)},
-      arguments);
+  std::vector<std::string> notes = spread_notes(rows, selection, arguments.metric);
+  print_stats({.header = {"axis", "value", "sequence", "variant", "runs", "failed", "n", "median",
+                          "median 95 % low", "high"},
+               .kind = "stats_sweep",
+               .columns = spread_columns(),
+               .groups = std::move(rows.groups),
+               .notes = std::move(notes)},
+              arguments);
   return kExitOk;
 }
 
