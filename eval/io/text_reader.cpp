@@ -119,8 +119,8 @@ std::size_t mark_length(std::string_view start, const std::string& name) {
   return start.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0;
 }
 
-/// Why bytes are no text; empty if they may be one.
-std::string problem_of_bytes(std::string_view bytes) {
+/// Why the first bytes of a file are those of no text; empty if they may be.
+std::string problem_of_start(std::string_view bytes) {
   constexpr std::array<std::pair<std::string_view, const char*>, 5> kCompressed{
       {{"\x1F\x8B", "gunzip"},
        {"PK\x03\x04", "unzip"},
@@ -131,6 +131,11 @@ std::string problem_of_bytes(std::string_view bytes) {
     if (bytes.starts_with(magic))
       return std::string("is compressed; decompress it, e.g. with `") + tool + "`";
   }
+  return "";
+}
+
+/// Why bytes of a file are no text; empty if they may be one.
+std::string problem_of_bytes(std::string_view bytes) {
   if (bytes.find('\0') == std::string_view::npos) return "";
   return "contains NUL bytes: it is binary, damaged, or UTF-16 text without its mark; expected UTF-8 text";
 }
@@ -156,8 +161,8 @@ TextBlocks::TextBlocks(const std::filesystem::path& file) : name_(file.string())
   unread_ = opened.bytes;
   read_more();
   begin_ = mark_length(buffer_, name_);
-  if (const std::string problem = problem_of_bytes(buffer_); !problem.empty())
-    throw InputError(name_, problem);
+  for (const std::string& problem : {problem_of_start(buffer_), problem_of_bytes(buffer_)})
+    if (!problem.empty()) throw InputError(name_, problem);
   while (!has_two_records(block()) && unread_ > 0) read_more();
 }
 
@@ -416,8 +421,9 @@ InputError TextRow::error(const std::string& problem) const { return {std::strin
 std::optional<TextRow> RowReader::next() {
   while (const std::optional<std::string_view> line = lines_.next()) {
     if (!file_.empty()) {  // where the format is detected, the name is not known
-      if (const std::string problem = problem_of_bytes(*line); !problem.empty())
-        throw InputError(std::string(file_), lines_.line_number(), problem);
+      std::string problem = lines_.line_number() == 1 ? problem_of_start(*line) : "";
+      if (problem.empty()) problem = problem_of_bytes(*line);
+      if (!problem.empty()) throw InputError(std::string(file_), lines_.line_number(), problem);
     }
     const std::size_t begin = line->find_first_not_of(kSeparators);
     if (begin == std::string_view::npos || (*line)[begin] == '#') continue;

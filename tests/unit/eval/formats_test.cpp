@@ -9,6 +9,7 @@
 
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
+#include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/simulated/smooth_path.h"
@@ -55,6 +56,14 @@ TEST(Formats, NameWhatIsNoTrajectory) {
     const auto file = folder.write(name, text);
     expect_input_error([&] { static_cast<void>(read_trajectory({.path = file})); }, {problem});
   }
+}
+
+TEST(Formats, OnlyTheStartOfAFileTellsThatItIsCompressed) {
+  const std::string text = "BZh0 1 2\n";
+  expect_input_error([&] { RowReader(text, "a").next(); }, {"a:1: is compressed"});
+  RowReader rows("name 1 2\nBZh0 3 4\n", "a");
+  ASSERT_TRUE(rows.next());
+  EXPECT_EQ(rows.next()->text(0), "BZh0");
 }
 
 TEST(Formats, SkipAByteOrderMarkAndNameUtf16) {
