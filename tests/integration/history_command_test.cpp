@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -253,6 +254,26 @@ TEST(SystemsRun, ExecutesTheProgramOfTheRepository) {
   EXPECT_EQ(parameter.exit_code, 2);
   EXPECT_NE(parameter.err.find("sets no parameter of slam"), std::string::npos) << parameter.err;
   EXPECT_EQ(run({"--fault", "detector_late"}).exit_code, 2);
+}
+
+// `history --keep-builds` of another process removes builds that nothing locks.
+TEST(CompareSystems, LocksItsBuildsDuringTheRuns) {
+  const MadeUpProject& project = shared_project();
+  std::ostringstream description;
+  description << std::ifstream(project.file("slam.toml")).rdbuf();
+  std::string text = description.str();
+  const std::string command = "[\"{binary}\", ";
+  text.replace(
+      text.find(command), command.size(),
+      R"(["sh", "-c", "flock -n '{source}.built' true && exit 9; exec \"$0\" \"$@\"", "{binary}", )");
+  project.folder().write("locked.toml", text);
+  const ProgramResult result =
+      project.run({"compare", project.file("locked.toml@") + project.commit(1),
+                   project.file("locked.toml@") + project.commit(2), "--plan", project.file("plan.toml"),
+                   "--pairs", "1", "--store", project.file("locked_gate.sqlite")});
+  EXPECT_EQ(result.out.find("exited with code 9"), std::string::npos) << result.out << result.err;
+  for (const bench::StoredRun& run : bench::Store(project.file("locked_gate.sqlite")).runs())
+    EXPECT_EQ(run.outcome, bench::Outcome::kOk) << run.detail;
 }
 
 TEST(CompareSystems, OfCommitsAreBuiltAndCompared) {

@@ -143,24 +143,31 @@ std::optional<SystemLocation> system_location(const std::string& location) {
   return SystemLocation{file, at == std::string::npos ? "" : location.substr(at + 1)};
 }
 
+/// A system, and the use of its build, which keeps `keep_latest` of other processes from removing it.
+struct LocatedSystem {
+  ExternalSystem system;
+  std::shared_ptr<const FileLock> use;  ///< null for a program that is not built here
+};
+
 /// The system, of a commit with its program built.
 /// @throws InputError if there is no such commit, or it cannot be built
-ExternalSystem system_at(const SystemLocation& location, const std::string& builds) {
+LocatedSystem system_at(const SystemLocation& location, const std::string& builds) {
   ExternalSystem system = load_external_system(location.file);
-  if (location.commit.empty()) return system;
+  if (location.commit.empty()) return {std::move(system), nullptr};
   const SourceBuilds source(system, builds, interrupt_requested);
   const SourceCommit commit = source.commit(location.commit);
   spdlog::info("build {} {}", commit.short_hash(), commit.subject);
   const SourceBuild build = source.build(commit);
   require_uninterrupted();
   if (!build.failure.empty()) throw InputError(location.file + "@" + location.commit, build.failure);
-  return built_system(std::move(system), commit, build);
+  return {built_system(std::move(system), commit, build), build.use};
 }
 
 Comparison compare_systems(const CompareArguments& arguments) {
   const SystemLocation base = *system_location(arguments.base);
-  const SystemPair systems{system_at(base, arguments.builds),
-                           system_at(*system_location(arguments.head), arguments.builds)};
+  const LocatedSystem base_system = system_at(base, arguments.builds);
+  const LocatedSystem head_system = system_at(*system_location(arguments.head), arguments.builds);
+  const SystemPair systems{base_system.system, head_system.system};
   PlanMatrix runs = single_system_runs(compared_plan(arguments), base.file);
   const int pairs = pairs_of(arguments, runs);
   const ExecutedPairs executed =
