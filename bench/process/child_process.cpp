@@ -307,7 +307,10 @@ int ChildProcess::poll_timeout_ms() const {
   return static_cast<int>(interval_.count());
 }
 
-void ChildProcess::terminate() const { kill(pid_, SIGTERM); }
+// A build tool starts compilers in process groups of their own, and a shell does not pass signals on.
+void ChildProcess::terminate() const {
+  for (const pid_t process : family_of(pid_)) kill(process, SIGTERM);
+}
 
 ProcessResult ChildProcess::wait() {
   int status = 0;

@@ -7,10 +7,15 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include "bench/profile/meters/process_usage.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -149,6 +154,29 @@ TEST(ProcessPool, TerminatesItsChildrenOnRequest) {
   ProcessPool pool([] { return true; });
   pool.start(0, shell("exec tail -f /dev/null"));
   EXPECT_EQ(pool.wait_next()->second.signal, SIGTERM);
+}
+
+// As compilers below a build tool, which has them in process groups of their own.
+TEST(ProcessPool, TerminatesTheDescendantsOfItsChildrenOnRequest) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "pid";
+  const auto is_written = [&] { return std::filesystem::exists(file); };
+  ProcessPool pool(is_written);
+  pool.start(0, shell("setsid sh -c 'echo $$ >" + file.string() + ".new; mv " + file.string() + ".new " +
+                      file.string() + "; exec sleep 60' & wait"));
+  EXPECT_EQ(pool.wait_next()->second.signal, SIGTERM);
+  pid_t descendant = 0;
+  std::ifstream(file) >> descendant;
+  ASSERT_GT(descendant, 0);
+  int left = 100;  // a killed process is listed until its new parent has waited for it
+  const auto runs = [&] {
+    std::ifstream stat("/proc/" + std::to_string(descendant) + "/stat");
+    std::string number, name, state;
+    return stat >> number >> name >> state && state != "Z";
+  };
+  while (runs() && --left > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_GT(left, 0) << "the descendant still runs";
+  if (left == 0) kill(descendant, SIGKILL);
 }
 
 TEST(MachineLoad, CountsAllColumnsButIdleAndIowaitAsBusy) {
