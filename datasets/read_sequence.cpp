@@ -6,6 +6,8 @@
 #include <limits>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "core/base/error.h"
 #include "datasets/calibration/rig_file.h"
 #include "datasets/formats/bag_format.h"
@@ -85,6 +87,14 @@ void check_rig(const SequenceContent& content) {
                                    "; write your values into this file, as in this example with those of "
                                    "freiburg3: " +
                                    std::string(kExampleCamera));
+  }
+  constexpr double kLeastFocal = 0.02;  // of the image size; a field of view of 175 deg has a fiftieth
+  if (camera.fx < kLeastFocal * camera.width || camera.fy < kLeastFocal * camera.height) {
+    throw InputError(
+        rig_file, fmt::format("the focal lengths {:g} and {:g} are too short for an image of {} x {} pixels; "
+                              "if they are relative to its size, write fx and cx times its width, and fy "
+                              "and cy times its height, into this file",
+                              camera.fx, camera.fy, camera.width, camera.height));
   }
   if (content.info.rig.has_imu && !content.extrinsic_known) {
     throw InputError(

@@ -143,6 +143,16 @@ TEST(BadSequence, InvalidCalibrationIsAnError) {
   expect_rejected(folder, {"sensor.yaml", "\"fov\" is not supported"});
 }
 
+TEST(BadSequence, FocalLengthsRelativeToTheImageAreAnError) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  folder.write("rig.toml",
+               "camera = { width = 640, height = 480, fx = 0.535, fy = 0.72, cx = 0.5, cy = 0.5 }\n");
+  expect_rejected(folder, {"rig.toml", "0.535", "640 x 480", "times its width"});
+  folder.write("rig.toml", "camera = { width = 640, height = 480, fx = 60, fy = 60, cx = 320, cy = 240 }\n");
+  EXPECT_EQ(open_sequence(folder.path())->info().rig.camera.fx, 60.0);
+}
+
 TEST(BadSequence, UnconnectedCoordinateFramesAreAnError) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
