@@ -104,6 +104,8 @@ AddressResult download_from(const std::string& url, DownloadRequest request, con
   const bool was_resumed = part.bytes() > 0 && part.state().url == url;
   const TransferResult result = transfer_with_retries(url, part, request, control);
   if (result.outcome == TransferOutcome::kStopped) return {};
+  if (result.outcome == TransferOutcome::kDenied)
+    return {std::nullopt, result.problem + ", see `stillpoint data catalogue NAME`"};
   if (result.outcome != TransferOutcome::kComplete) return {std::nullopt, result.problem};
   std::string problem = content_problem(part.path(), request.file.filename().string());
   if (problem.empty()) {

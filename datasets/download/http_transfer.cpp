@@ -317,7 +317,7 @@ TransferResult http_failure(long status, double retry_after_s) {
   const bool is_temporary = status == 408 || status == 425 || status == 429 || status >= 500;
   std::string problem = fmt::format("answers with HTTP status {}", status);
   if (status == 401 || status == 403)
-    problem += " (access denied: the host may require a token, see `stillpoint data catalogue NAME`)";
+    return {TransferOutcome::kDenied, problem + " (access denied: the host may require a token)", 0.0};
   if (status == 404 || status == 410) problem += " (no such file)";
   return {is_temporary ? TransferOutcome::kTemporary : TransferOutcome::kPermanent, problem, retry_after_s};
 }

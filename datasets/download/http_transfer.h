@@ -102,6 +102,7 @@ enum class TransferOutcome {
   kStopped,    ///< by `TransferControl::stop`; the next attempt continues
   kTemporary,  ///< another attempt may succeed
   kPermanent,  ///< the address does not provide the file
+  kDenied,     ///< the address does not provide it to this user
 };
 
 struct TransferResult {

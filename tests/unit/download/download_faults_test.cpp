@@ -22,7 +22,8 @@ TEST(Download, EndsAtOnceWhenTheFileIsMissingOrForbidden) {
     });
     const Target target;
     expect_input_error([&] { static_cast<void>(download(target.request({server.url("/data.tgz")}), {})); },
-                       {"HTTP status " + std::to_string(status)});
+                       {"HTTP status " + std::to_string(status),
+                        status == 403 ? "require a token), see `stillpoint data catalogue" : "no such file"});
     EXPECT_EQ(server.requests(), 1);
     EXPECT_FALSE(fs::exists(target.file));
   }
