@@ -318,7 +318,8 @@ std::optional<double> jitter_of(MatchView matches, const Similarity& S_w_v) {
 AlignedMatches strictly_aligned(MatchView matches, Alignment kind, std::size_t first_n) {
   AlignedMatches result = aligned(matches, kind, first_n);
   const CompletedAlignment& completed = result.completed;
-  const bool no_scale = kind == Alignment::kSim3 && completed.source == RotationSource::kStanding;
+  const bool no_scale = kind == Alignment::kSim3 && (completed.source == RotationSource::kStanding ||
+                                                     completed.source == RotationSource::kUnlikePath);
   if (no_scale || (first_n > 0 && !completed.determined)) {
     throw InputError("strict protocol",
                      std::string(no_scale ? "the scale" : "the rotation") + " is not determined by " +
@@ -497,13 +498,24 @@ std::span<const Protocol> protocols() { return kProtocols; }
 
 namespace {
 
+std::string open_rotation_text(RotationSource source) {
+  switch (source) {
+    case RotationSource::kPositions:
+      return "";
+    case RotationSource::kLine:
+      return "the path is a straight line: positions leave the rotation about it not determined";
+    case RotationSource::kStanding:
+      return "the positions stand still: they leave the rotation not determined";
+    case RotationSource::kUnlikePath:
+      break;
+  }
+  return "the positions do not follow those of the ground truth: they leave the rotation not determined";
+}
+
 /// What the positions leave open; empty if nothing.
 std::string rotation_note(const Evaluation& evaluation) {
-  if (evaluation.rotation_source == RotationSource::kPositions) return "";
-  const std::string open =
-      evaluation.rotation_source == RotationSource::kLine
-          ? "the path is a straight line: positions leave the rotation about it not determined"
-          : "the positions stand still: they leave the rotation not determined";
+  const std::string open = open_rotation_text(evaluation.rotation_source);
+  if (open.empty()) return "";
   return open + (evaluation.rotation_determined
                      ? "; errors in degrees are those after the rotation that fits the orientations best"
                      : ", and the orientations do not tell it: errors in degrees are n/a");

@@ -82,8 +82,8 @@ bool is_exact_line(const PathShape& shape) { return shape.across_m < kExactLineR
 RotationSource source_of(const PathMoments& moments, const PathShape& gt, const PathShape& est) {
   const double noise_m = kNoiseFactor * moments.rmse_m;
   const double extension_m = std::max(gt.along_m, gt.across_m);
-  if (moments.correlation < kMinPathCorrelation || (extension_m < kMaxStanding && extension_m < noise_m))
-    return RotationSource::kStanding;
+  if (extension_m < kMaxStanding && extension_m < noise_m) return RotationSource::kStanding;
+  if (moments.correlation < kMinPathCorrelation) return RotationSource::kUnlikePath;
   const bool is_line = is_exact_line(gt) || is_exact_line(est) ||
                        (gt.across_m < kMaxLineRatio * gt.along_m && gt.across_m < noise_m);
   return is_line ? RotationSource::kLine : RotationSource::kPositions;

@@ -21,9 +21,10 @@ namespace stillpoint::eval {
 
 /// What determines the rotation of an alignment.
 enum class RotationSource {
-  kPositions,  ///< the path extends in two directions
-  kLine,       ///< a straight path: the rotation about it is that of the orientations
-  kStanding,   ///< no path: the rotation is that of the orientations
+  kPositions,   ///< the path extends in two directions
+  kLine,        ///< a straight path: the rotation about it is that of the orientations
+  kStanding,    ///< no path: the rotation is that of the orientations
+  kUnlikePath,  ///< paths that do not follow each other, as with a wrong clock: same
 };
 
 struct CompletedAlignment {

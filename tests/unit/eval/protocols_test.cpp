@@ -192,6 +192,19 @@ TEST(StandingPath, HasPositionErrorsWithoutAScale) {
   EXPECT_THROW(static_cast<void>(evaluate_with("strict:sim3", gt, est)), std::runtime_error);
 }
 
+// As with stamps of another clock: the camera moves, but not as the ground truth at these times.
+TEST(UnlikePath, IsNotCalledStanding) {
+  Trajectory gt;
+  Trajectory est;
+  for (int i = 0; i <= 200; ++i) {
+    gt.poses.push_back({from_seconds(0.1 * i), Pose{.p = {std::sin(0.2 * i), std::cos(0.31 * i), 0}}});
+    est.poses.push_back({from_seconds(0.1 * i), Pose{.p = {std::sin(0.83 * i), std::cos(0.57 * i), 0}}});
+  }
+  const Evaluation evaluation = evaluate_with("strict:se3", gt, est);
+  EXPECT_FALSE(has_note(evaluation, "stand still"));
+  EXPECT_TRUE(has_note(evaluation, "do not follow those of the ground truth"));
+}
+
 TEST(MissingOrientations, MakeErrorsThatDependOnThemNotAvailable) {
   const Trajectory gt = circle(0, 50, 0.01);
   Trajectory est = circle(0, 50, 0.1);
