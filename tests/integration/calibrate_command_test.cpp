@@ -74,12 +74,15 @@ TEST(CalibrateCommand, NamesTheParametersForAMistypedOne) {
 
 TEST(CalibrateCommand, WritesTheLastIterationWhenInterrupted) {
   const TemporaryFolder out;
-  const fs::path rig = out.path() / "rig.toml";
+  const fs::path rig = out.path() / "rig.yaml";
   const ProgramResult result =
-      run_program(calibrate_with({"-v", "--out", rig.string()}), {.interrupt_after = "iteration 2"});
+      run_program(calibrate_with({"-v", "--out", rig.string(), "--out-format", "orb_slam"}),
+                  {.interrupt_after = "iteration 2"});
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_NE(result.out.find("interrupted"), std::string::npos) << result.out;
-  EXPECT_TRUE(fs::exists(rig));
+  std::ostringstream text;
+  text << std::ifstream(rig).rdbuf();
+  EXPECT_NE(text.str().find("\n# interrupted"), std::string::npos) << text.str();
 }
 
 TEST(CalibrateCommand, TakesSeveralRecordingsOfADevice) {

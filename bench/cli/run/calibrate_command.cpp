@@ -189,13 +189,6 @@ datasets::RigFormat out_format_of(const CalibrateArguments& arguments) {
   return enum_of<datasets::RigFormat>("--out-format", arguments.out_format);
 }
 
-/// The file of --out: a rig.toml has the deviations, too.
-std::string calibration_file(const CalibrationSubject& subject, const CalibrationResult& result,
-                             datasets::RigFormat format) {
-  return format == datasets::RigFormat::kStillpoint ? calibrated_rig_text(subject, result)
-                                                    : datasets::rig_text(result.calibration.rig, format);
-}
-
 void write_plot(const CalibrateArguments& arguments, const datasets::SensorStream& stream,
                 const CalibrationResult& result) {
   constexpr double kPixelsPerPoint = report::theme::kPixelsPerInch / 72.0;
@@ -270,7 +263,7 @@ int calibrate_sequences(const CalibrateArguments& arguments) {
       .sequence = names, .has_imu = !input->imu.empty(), .has_depth_camera = !input->depth_is_registered};
   std::cout << (arguments.json ? calibration_json(subject, result) : calibration_table(subject, result));
   if (!arguments.out.empty())
-    write_output(arguments.out, calibration_file(subject, result, format), rules_of(arguments));
+    write_output(arguments.out, calibration_file_text(subject, result, format), rules_of(arguments));
   if (!arguments.plot.empty()) write_plot(arguments, *recordings.front().stream, result);
   if (result.interrupted) return kExitInterrupted;
   return result.usable ? kExitOk : kExitInconclusive;

@@ -182,8 +182,6 @@ std::string model_text(CameraModel model) {
   return "";
 }
 
-}  // namespace
-
 std::string calibrated_rig_text(const CalibrationSubject& subject, const CalibrationResult& result) {
   const Rig& rig = result.calibration.rig;
   RigLines lines(result);
@@ -224,6 +222,17 @@ std::string calibrated_rig_text(const CalibrationSubject& subject, const Calibra
   lines.add("accel_walk", rig.imu_noise.accel_walk);
   lines.add("time_offset_s", rig.time_offset_s);
   return lines.text();
+}
+
+}  // namespace
+
+std::string calibration_file_text(const CalibrationSubject& subject, const CalibrationResult& result,
+                                  datasets::RigFormat format) {
+  if (format == datasets::RigFormat::kStillpoint) return calibrated_rig_text(subject, result);
+  std::string text = datasets::rig_text(result.calibration.rig, format);
+  // At the end: OpenCV requires the first line of YAML files.
+  for (const std::string& line : remarks(subject, result)) text += "# " + line + '\n';
+  return text;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 
 #include "core/calibration/calibrate.h"
 #include "core/geometry/camera.h"
+#include "datasets/calibration/rig_yaml_text.h"
 #include "reports/drawing/drawing.h"
 
 namespace stillpoint::bench {
@@ -25,10 +26,10 @@ struct CalibrationSubject {
 [[nodiscard]] std::string calibration_json(const CalibrationSubject& subject,
                                            const CalibrationResult& result);
 
-/// A rig file (see datasets/calibration/rig_file.h), with deviation and stated value of each estimated number
-/// as comments.
-[[nodiscard]] std::string calibrated_rig_text(const CalibrationSubject& subject,
-                                              const CalibrationResult& result);
+/// The calibration as a file, with what limits it as comments. A rig file (see
+/// datasets/calibration/rig_file.h) has deviation and stated value of each estimated number, too.
+[[nodiscard]] std::string calibration_file_text(const CalibrationSubject& subject,
+                                                const CalibrationResult& result, datasets::RigFormat format);
 
 /// Mean reprojection error in the cells of a grid over the image, as lines: with the stated calibration, and
 /// with that of the other half. What poses and points cannot absorb, as distortion, shows as a pattern; noise
