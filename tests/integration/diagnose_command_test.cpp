@@ -119,6 +119,9 @@ TEST(DiagnoseCommand, TellsAJumpOfTheTruthInItsRow) {
   EXPECT_EQ(sound.exit_code, 3) << sound.out << sound.err;
   EXPECT_NE(sound.out.find("nothing could be compared"), std::string::npos) << sound.out;
   EXPECT_EQ(sound.out.find("contradict"), std::string::npos) << sound.out;
+  const ProgramResult json = diagnosis_of(rendered_sequence(), {"--truth", "--json"});
+  EXPECT_EQ(json.exit_code, 2) << json.out;
+  EXPECT_NE(json.err.find("--json"), std::string::npos) << json.err;
   const TemporaryFolder folder;
   const fs::path copy = copy_of_rendered_sequence(folder);
   plant_jump(copy / "groundtruth.txt");

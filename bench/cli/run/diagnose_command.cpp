@@ -92,6 +92,7 @@ DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::
 struct TruthFindings {
   std::string contradictions, undetermined;  ///< one line each
   bool compared = false;                     ///< at least one property of a sequence
+  bool unreadable = false;                   ///< a sequence
 
   void add(const datasets::SequenceInfo& info, const TruthReport& report) {
     for (const Cause& cause : truth_causes(report, info))
@@ -115,7 +116,7 @@ struct TruthFindings {
   }
   [[nodiscard]] int exit_code() const {
     if (!contradictions.empty()) return kExitFindings;
-    return compared ? kExitOk : kExitInconclusive;
+    return compared && !unreadable ? kExitOk : kExitInconclusive;
   }
 };
 
@@ -142,6 +143,7 @@ int check_truths(const DiagnoseArguments& arguments) {
     } catch (const InputError& error) {
       if (names.size() == 1) throw;
       std::cout << fmt::format("{:<24} {}\n", name, error.what());
+      findings.unreadable = true;
     }
   }
   std::cout << findings.text();
@@ -170,6 +172,8 @@ int diagnose_sequence(const DiagnoseArguments& arguments) {
     throw InputError("--truth",
                      "compares the ground truth with a run without IMU of its own; leave RUN out, or name "
                      "one of another system");
+  if (arguments.truth && arguments.json)
+    throw InputError("--json", "has no effect on the table of --truth; omit one of them");
   if (arguments.truth) return check_truths(arguments);
   if (arguments.sequence.empty())
     throw InputError("SEQ", "is missing; only --truth works on all registered sequences");
