@@ -176,7 +176,11 @@ bool is_nmea(std::string_view text) {
 
 LoadedTrajectory parse_nmea(std::string_view text, const std::string& name) {
   const NmeaContent content = parse_sentences(text);
-  if (content.fixes.empty()) throw InputError(name, "has no GGA sentence with a position");
+  if (content.fixes.empty())
+    throw InputError(
+        name,
+        "has no GGA sentence with a position; record with a GNSS fix, or, if the file is no NMEA, name "
+        "the format of the other one only: --format gt=nmea");
   if (!content.first_day)
     throw InputError(name,
                      "has no valid RMC sentence (status A) with a date; record RMC as well as GGA sentences");

@@ -29,7 +29,7 @@ std::vector<std::string> repair_texts(const RowRepairs& repairs) {
   std::vector<std::string> texts;
   if (repairs.skipped > 0) {
     texts.push_back(rows_text(repairs.skipped) +
-                    " skipped: no valid pose (nan, a zero quaternion, or no GNSS fix)");
+                    " skipped: no valid pose (nan, a zero quaternion, no GNSS fix, or a damaged sentence)");
   }
   if (repairs.repeated > 0) {
     texts.push_back(rows_text(repairs.repeated) +
