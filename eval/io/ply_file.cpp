@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <set>
 #include <sstream>
@@ -110,19 +111,34 @@ void set_value(CloudPoint& point, std::size_t value, double number) {
     point.rgb[value - 3] = static_cast<std::uint8_t>(std::clamp(number, 0.0, 255.0));
 }
 
+/// @param format of the points
+std::string ply_header(const std::string& format, std::size_t points) {
+  return kPlyMagic + ("format " + format) + " 1.0\nelement vertex " + std::to_string(points) +
+         "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+         "property uchar blue\nend_header\n";
+}
+
 }  // namespace
 
 std::string ply_bytes(const std::vector<CloudPoint>& cloud) {
-  std::string bytes = kPlyMagic;
-  bytes +=
-      "format binary_little_endian 1.0\nelement vertex " + std::to_string(cloud.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
-      "property uchar blue\nend_header\n";
+  std::string bytes = ply_header("binary_little_endian", cloud.size());
   for (const CloudPoint& point : cloud) {
     bytes.append(reinterpret_cast<const char*>(point.p.data()), 3 * sizeof(float));
     bytes.append(reinterpret_cast<const char*>(point.rgb.data()), point.rgb.size());
   }
   return bytes;
+}
+
+std::string ply_text(const std::vector<CloudPoint>& cloud) {
+  std::string text = ply_header("ascii", cloud.size());
+  std::array<char, 192> row{};  // the longest float has 43 characters
+  for (const CloudPoint& point : cloud) {
+    std::snprintf(row.data(), row.size(), "%.3f %.3f %.3f %d %d %d\n", static_cast<double>(point.p.x()),
+                  static_cast<double>(point.p.y()), static_cast<double>(point.p.z()), point.rgb[0],
+                  point.rgb[1], point.rgb[2]);
+    text += row.data();
+  }
+  return text;
 }
 
 std::vector<CloudPoint> parse_ply(const std::string& text, const std::string& place) {

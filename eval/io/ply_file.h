@@ -20,11 +20,14 @@ struct CloudPoint {
   std::array<std::uint8_t, 3> rgb{};
 };
 
-/// The first bytes of each file that `ply_bytes` writes.
+/// The first bytes of each file that is written.
 inline constexpr const char* kPlyMagic = "ply\n";
 
 /// A binary file with the properties float x, y, z and uchar red, green, blue.
 [[nodiscard]] std::string ply_bytes(const std::vector<CloudPoint>& cloud);
+
+/// The same as text, in millimeters: valid UTF-8, as JSON requires.
+[[nodiscard]] std::string ply_text(const std::vector<CloudPoint>& cloud);
 
 /// Of a text; `place` is its name in error messages.
 /// @throws InputError if it is no PLY file, has no points or lists in front of them, ends early, or contains

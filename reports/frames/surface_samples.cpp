@@ -3,8 +3,6 @@
 
 #include <vector>
 
-#include <fmt/format.h>
-
 namespace stillpoint::report {
 namespace {
 
@@ -34,15 +32,7 @@ void SurfaceSamples::add(const FrameReport& report) {
 
 std::string SurfaceSamples::ply() const {
   const std::vector<eval::CloudPoint> cloud = eval::thinned_cloud(map_.cloud(), kMaxSurfacePoints);
-  if (cloud.empty()) return "";
-  std::string text = fmt::format(
-      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
-      cloud.size());
-  for (const eval::CloudPoint& point : cloud)
-    text += fmt::format("{:.3f} {:.3f} {:.3f} {} {} {}\n", point.p.x(), point.p.y(), point.p.z(),
-                        point.rgb[0], point.rgb[1], point.rgb[2]);
-  return text;
+  return cloud.empty() ? "" : eval::ply_text(cloud);
 }
 
 }  // namespace stillpoint::report

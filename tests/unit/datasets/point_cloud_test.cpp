@@ -107,6 +107,15 @@ TEST(PlyFile, TextWithOtherPropertiesAndTypesIsRead) {
   EXPECT_EQ(read[1].p, Eigen::Vector3f(4, 5, 6));
 }
 
+TEST(PlyFile, TextIsReadBackInMillimeters) {
+  const std::vector<CloudPoint> read =
+      eval::parse_ply(eval::ply_text({{{1.23456F, -2.0F, 4096.0F}, {1, 2, 255}}}), "a");
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_NEAR(read[0].p.x(), 1.235F, 1e-6F);
+  EXPECT_EQ(read[0].p.tail<2>(), Eigen::Vector2f(-2, 4096));
+  EXPECT_EQ(read[0].rgb, (std::array<std::uint8_t, 3>{1, 2, 255}));
+}
+
 TEST(PlyFile, DefectiveFilesAreErrors) {
   const TemporaryFolder folder;
   const std::string good = eval::ply_bytes({{{1, 2, 3}, {}}});
