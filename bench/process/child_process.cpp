@@ -211,8 +211,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
 
 ChildProcess::~ChildProcess() {
   if (pid_ > 0) {
-    kill(-pid_, SIGKILL);
-    kill(pid_, SIGKILL);  // its process group may not exist yet
+    kill_family();
     while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
@@ -234,6 +233,7 @@ void ChildProcess::read_messages() {
   }
   if (result_.messages.size() > 2 * kMaxMessageBytes) {
     result_.messages.erase(0, result_.messages.size() - kMaxMessageBytes);
+    result_.messages_incomplete = true;
   }
 }
 
@@ -290,8 +290,7 @@ void ChildProcess::enforce_limits() {
   result_.timed_out = late;
   result_.out_of_memory = large && !late;
   result_.too_many_messages = loud && !large && !late;
-  kill(-pid_, SIGKILL);
-  kill(pid_, SIGKILL);
+  kill_family();
 }
 
 bool ChildProcess::poll_once() {
@@ -310,6 +309,11 @@ int ChildProcess::poll_timeout_ms() const {
 // A build tool starts compilers in process groups of their own, and a shell does not pass signals on.
 void ChildProcess::terminate() const {
   for (const pid_t process : family_of(pid_)) kill(process, SIGTERM);
+}
+
+void ChildProcess::kill_family() const {
+  kill(-pid_, SIGKILL);
+  kill(pid_, SIGKILL);  // its process group may not exist yet
 }
 
 ProcessResult ChildProcess::wait() {
@@ -344,9 +348,14 @@ void ProcessPool::start(std::size_t tag, const ProcessSpec& spec) {
 }
 
 void ProcessPool::forward_stop() {
-  if (stop_forwarded_ || !stop_requested_ || !stop_requested_()) return;
-  stop_forwarded_ = true;
-  for (const Entry& entry : children_) entry.child->terminate();
+  if (!stop_requested_ || !stop_requested_()) return;
+  const auto now = std::chrono::steady_clock::now();
+  const bool is_first = !stopped_;
+  if (is_first) stopped_ = now;
+  for (const Entry& entry : children_) {
+    if (is_first) entry.child->terminate();
+    if (now - *stopped_ >= grace_) entry.child->kill_family();
+  }
 }
 
 void ProcessPool::wait_for_messages() const {

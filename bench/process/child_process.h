@@ -37,9 +37,10 @@ struct ProcessResult {
   int exit_code = 0;  ///< 0 when terminated by a signal
   int signal = 0;     ///< 0 when it exited
   bool timed_out = false;
-  bool out_of_memory = false;      ///< killed at its memory limit
-  bool too_many_messages = false;  ///< killed at its message limit
-  std::string messages;            ///< last 64 kB of stderr
+  bool out_of_memory = false;        ///< killed at its memory limit
+  bool too_many_messages = false;    ///< killed at its message limit
+  std::string messages;              ///< at least the last 64 kB
+  bool messages_incomplete = false;  ///< earlier ones were discarded
   double wall_s = 0.0;
   double user_s = 0.0;
   double system_s = 0.0;
@@ -80,6 +81,8 @@ class ChildProcess {
 
   /// Sends SIGTERM.
   void terminate() const;
+  /// Sends SIGKILL to the child and the processes of its group.
+  void kill_family() const;
 
   /// Waits for the exit; does not block after `poll_once` returned false.
   [[nodiscard]] ProcessResult wait();
@@ -115,7 +118,10 @@ class ChildProcess {
 class ProcessPool {
  public:
   /// @param stop_requested polled at least ten times per second; on true all children get SIGTERM
-  explicit ProcessPool(std::function<bool()> stop_requested) : stop_requested_(std::move(stop_requested)) {}
+  /// @param grace time after which those that ignore it, and their children, are killed
+  explicit ProcessPool(std::function<bool()> stop_requested,
+                       std::chrono::milliseconds grace = std::chrono::seconds(10))
+      : stop_requested_(std::move(stop_requested)), grace_(grace) {}
 
   /// @param tag returned by `wait_next` with the result of this child
   void start(std::size_t tag, const ProcessSpec& spec);
@@ -139,7 +145,8 @@ class ProcessPool {
 
   std::function<bool()> stop_requested_;
   std::vector<Entry> children_;
-  bool stop_forwarded_ = false;
+  std::chrono::milliseconds grace_;
+  std::optional<std::chrono::steady_clock::time_point> stopped_;  ///< when SIGTERM was sent
 };
 
 }  // namespace stillpoint::bench

@@ -357,7 +357,10 @@ class PlanRunner {
   /// previous one is stored first.
   void end_run(std::size_t run, const ProcessResult& end) {
     const RunRequest request = request_of(run, folders_.find(matrix_.runs[run].sequence));
-    if (stopped() && (end.signal != 0 || end.exit_code == kInterruptedCode)) {
+    // Another program may end with any status on SIGTERM, and leave the first part of its trajectory.
+    const bool was_interrupted =
+        is_external(identity_of(run)) || end.signal != 0 || end.exit_code == kInterruptedCode;
+    if (stopped() && was_interrupted) {
       leased_.erase(run);
       writer_.release(identity_of(run));
       fs::remove_all(request.work);

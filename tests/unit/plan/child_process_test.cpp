@@ -39,6 +39,17 @@ TEST(ChildProcess, ReportsAProgramThatCannotBeStarted) {
   EXPECT_EQ(last_line(end.messages), "cannot be started");
 }
 
+TEST(ProcessPool, KillsAProgramThatIgnoresTheRequestToStop) {
+  const TemporaryFolder folder;
+  const std::filesystem::path ready = folder.path() / "ready";
+  ProcessPool pool([&ready] { return std::filesystem::exists(ready); }, std::chrono::milliseconds(200));
+  pool.start(7, shell("trap '' TERM; : >'" + ready.string() + "'; sleep 20; sleep 20"));
+  const auto end = pool.wait_next();
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->second.signal, SIGKILL);
+  EXPECT_LT(end->second.wall_s, 15.0);
+}
+
 TEST(ChildProcess, LeavesNoFileOpenWithoutDescriptorsForItsPipes) {
   std::vector<int> unused;
   for (int file = 0; unused.size() < 4; ++file) {
