@@ -4,18 +4,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/model/json_problem.h"
 #include "bench/model/scale_fit.h"
 #include "bench/record/result_values.h"
 #include "bench/record/run_environment.h"
 #include "bench/run/run_result.h"
+#include "bench/systems/module_times.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
+#include "datasets/calibration/rig_yaml_text.h"
 #include "datasets/faults/faulty_stream.h"
 #include "datasets/faults/rig_faults.h"
 #include "datasets/open_sequence.h"
@@ -84,7 +86,7 @@ Placeholders placeholders_of(const ExternalSystem& system, const RunRequest& req
   values["seed"] = std::to_string(request.identity.seed);
   values["repetition"] = std::to_string(request.identity.repetition);
   values["speed"] = request.identity.mode.ends_with("realtime") ? "1" : "0";
-  if (!system.calibration_template.empty())
+  if (has_calibration(system))
     values["calibration"] = (fs::absolute(request.work) / system.calibration_file).string();
   for (const auto& [name, value] : system.param) values[std::string(kParamPrefix) + name] = value;
   if (request.identity.axis.starts_with(kParamPrefix))
@@ -103,11 +105,20 @@ SensorRates rates_of(const datasets::SequenceInfo& info) {
 }
 
 void write_calibration(const ExternalSystem& system, const RunRequest& request, Placeholders values) {
-  const fs::path source = fs::path(system.folder) / system.calibration_template;
   const std::unique_ptr<datasets::SensorStream> stream = played_sequence(request);
-  values.merge(calibration_placeholders(stream->info().rig, rates_of(stream->info())));
-  eval::write_text_file(request.work / system.calibration_file,
-                        expanded(eval::read_text_file(source), values, source.string()));
+  const datasets::SequenceInfo& info = stream->info();
+  const fs::path file = request.work / system.calibration_file;
+  fs::create_directories(file.parent_path());
+  if (!system.calibration_format.empty()) {
+    for (const auto& [format, name] : enum_names(datasets::RigFormat{})) {
+      if (name == system.calibration_format)
+        eval::write_text_file(file, datasets::rig_text(info.rig, format));
+    }
+    return;
+  }
+  const fs::path source = fs::path(system.folder) / system.calibration_template;
+  values.merge(calibration_placeholders(info.rig, rates_of(info)));
+  eval::write_text_file(file, expanded(eval::read_text_file(source), values, source.string()));
 }
 
 /// That of this process, with the variables of the system.
@@ -162,20 +173,20 @@ ProcessSpec in_container(const ExternalSystem& system, const RunRequest& request
   return spec;
 }
 
-/// The document itself, or its member "timings" as in a result.json.
-Json timings_of(const fs::path& file) {
-  const Json json = Json::parse(eval::read_text_file(file));
-  return json.contains("timings") ? json.at("timings") : json;
-}
-
 RunOutcome failed(Outcome outcome, const std::string& detail) {
   RunOutcome result;
   result.outcome = outcome;
-  result.detail = detail;
+  result.detail = one_line(detail);
   return result;
 }
 
 }  // namespace
+
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  return escaped_utf8(text);
+}
 
 std::vector<eval::ClaimedPose> claims_of(const Trajectory& trajectory, std::span<const Timestamp> frames) {
   constexpr double kSameStamp_s = 1e-3;  // > rounding of stamps in files with 6 decimals
@@ -240,7 +251,7 @@ ProcessSpec ExternalRun::command(const RunRequest& request) const {
   const fs::path sequence = exported(request, system_.layout);
   fs::create_directories(request.work);
   const Placeholders values = placeholders_of(system_, request, sequence);
-  if (!system_.calibration_template.empty()) write_calibration(system_, request, values);
+  if (has_calibration(system_)) write_calibration(system_, request, values);
   std::vector<std::string> words;
   for (const std::string& word : system_.command) words.push_back(expanded(word, values, system_.path));
   ProcessSpec spec;
@@ -263,7 +274,7 @@ void apply_scale(SystemTrajectory& output, const datasets::SequenceInfo& info) {
   output.log += fmt::format("positions multiplied by {:.6g}{}\n", scale, kScaleFitted);
 }
 
-RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
+RunOutcome scored(const ExternalSystem& system, const RunRequest& request, const ProcessResult& process) {
   const std::unique_ptr<datasets::SensorStream> stream = played_sequence(request);
   const datasets::SequenceInfo& info = stream->info();
   SystemTrajectory output = read_output(system, request.work, info);
@@ -286,7 +297,7 @@ RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
   result.metrics = measured_metrics({.scored = measurements_of(score).scored, .honesty = score.honesty});
   if (is_scaled) state_fitted_scale(result.metrics);
   result.attachments["trajectory"] = std::move(output.text);
-  if (!system.timings.empty()) result.costs = module_costs(timings_of(request.work / system.timings));
+  result.costs = read_module_times(system, request.work, process);
   return result;
 }
 
@@ -317,11 +328,9 @@ RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& 
   if (!fs::exists(request.work / system_.trajectory))
     return failed(Outcome::kLost, "wrote no " + system_.trajectory);
   try {
-    return scored(system_, request);
+    return scored(system_, request, process);
   } catch (const InputError& error) {
     return failed(Outcome::kCrashed, error.what());
-  } catch (const nlohmann::json::exception& error) {
-    return failed(Outcome::kCrashed, system_.timings + ": " + json_problem(error));
   }
 }
 

@@ -24,6 +24,10 @@ namespace stillpoint::bench {
 /// not reach another program.
 [[nodiscard]] bool reaches_external_systems(const std::string& fault);
 
+/// A message of a program as one line of UTF-8: control characters become blanks, bytes of other encodings
+/// `\xNN`.
+[[nodiscard]] std::string one_line(std::string text);
+
 /// A trajectory as T_w_c, and how it was read.
 struct SystemTrajectory {
   Trajectory trajectory;

@@ -17,8 +17,10 @@
 #include "bench/config/spelling.h"
 #include "bench/config/toml_source.h"
 #include "bench/process/child_process.h"
+#include "bench/systems/module_times.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
+#include "datasets/calibration/rig_yaml_text.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
@@ -52,7 +54,7 @@ std::string text_of(const Setting& setting) {
 Placeholders placeholder_names(const ExternalSystem& system) {
   Placeholders names;
   for (const char* name : {"sequence", "out", "here", "bin", "seed", "repetition", "speed"}) names[name] = "";
-  if (!system.calibration_template.empty()) names["calibration"] = "";
+  if (has_calibration(system)) names["calibration"] = "";
   if (!system.source.binary.empty()) names["source"] = names["binary"] = "";
   for (const auto& [name, value] : system.param) names[std::string(kParamPrefix) + name] = value;
   return names;
@@ -87,6 +89,20 @@ void require_environment(const Setting& setting, const ExternalSystem& system) {
   }
 }
 
+void require_calibration(const Setting& setting, const ExternalSystem& system) {
+  if (setting.key != "calibration_format") return;
+  if (!system.calibration_template.empty())
+    throw InputError(setting.file, setting.line,
+                     "\"calibration_format\" and calibration_template exclude each other; remove one");
+  std::vector<std::string> names;
+  for (const auto& [unused, name] : enum_names(datasets::RigFormat{})) names.emplace_back(name);
+  if (std::ranges::find(names, system.calibration_format) == names.end())
+    throw InputError(setting.file, setting.line,
+                     fmt::format("\"calibration_format\" is \"{}\"; expected one of: {}; or write a "
+                                 "calibration_template",
+                                 system.calibration_format, fmt::join(names, ", ")));
+}
+
 void require_image(const ExternalSystem& system) {
   if ((system.runner == ContainerRunner::kNone) == system.image.empty()) return;
   throw InputError(system.path, system.image.empty()
@@ -111,6 +127,20 @@ void require_source(const ExternalSystem& system, const Setting& setting) {
   if (source.git.find("://") != std::string::npos)
     throw InputError(setting.file, setting.line,
                      "\"source.git\" is an address; clone it, and state the folder of the clone");
+}
+
+/// @param timing settings of the table [timing]
+void apply_timing(ExternalSystem& system, const std::vector<Setting>& timing) {
+  for (const Setting& setting : timing) {
+    const std::string pattern = text_of(setting);
+    if (const std::string problem = is_timing_table(system) ? "" : pattern_problem(pattern); !problem.empty())
+      throw InputError(setting.file, setting.line, "\"" + setting.key + "\" " + problem);
+    system.timing[setting.key.substr(kTimingPrefix.size())] = pattern;
+  }
+  if (timing.empty() && system.timing_unit != TimingUnit::kMilliseconds)
+    throw InputError(system.path,
+                     "has a timing_unit and no table [timing]; remove timing_unit: other times are "
+                     "in milliseconds");
 }
 
 /// Hash of the contents that determine a run: a rebuilt program or an edited script is another system.
@@ -149,6 +179,33 @@ void apply_sets(ExternalSystem& system, const std::vector<Setting>& settings,
   }
 }
 
+/// The paths with {here} or {source} in a command line of a shell, or behind "--option=".
+std::vector<std::string> paths_in(const ExternalSystem& system, std::string_view word) {
+  constexpr std::string_view kSeparators = " \t\n'\"`=;|&<>(),";
+  std::vector<std::string> paths;
+  while (!word.empty()) {
+    const std::size_t end = std::min(word.find_first_of(kSeparators), word.size());
+    const std::string part(word.substr(0, end));
+    const bool has_folder =
+        part.find("{here}") != std::string::npos || part.find("{source}") != std::string::npos;
+    if (has_folder) paths.push_back(with_folders(system, part));
+    word.remove_prefix(std::min(end + 1, word.size()));
+  }
+  return paths;
+}
+
+/// The script of an interpreter in PATH, e.g. ["python3", "slam.py"] with a working folder of the system.
+/// @return empty if the first argument is no file there
+fs::path script_of(const ExternalSystem& system) {
+  const bool is_in_path = system.command.front().find('/') == std::string::npos;
+  if (!is_in_path || system.working_folder.find("{out}") != std::string::npos) return {};
+  const auto argument = std::find_if(system.command.begin() + 1, system.command.end(),
+                                     [](const std::string& word) { return !word.starts_with('-'); });
+  return argument == system.command.end()
+             ? fs::path()
+             : fs::path(system.folder) / with_folders(system, system.working_folder) / *argument;
+}
+
 }  // namespace
 
 // Programs of PATH belong to the machine; a file without {here}, {bin} or {source} may be an output.
@@ -166,7 +223,10 @@ std::vector<std::string> files_of(const ExternalSystem& system) {
     const bool is_in_image = system.runner != ContainerRunner::kNone && path_below(system, program).empty();
     if (is_program && path.find('/') != std::string::npos && !is_in_image) add_file(program);
     if (!is_program && path != word) add_file(path);
+    if (std::error_code ignored; !is_program && !fs::is_regular_file(path, ignored))
+      std::ranges::for_each(paths_in(system, word), add_file);
   }
+  if (system.runner == ContainerRunner::kNone) add_file(script_of(system));
   return files;
 }
 
@@ -175,6 +235,12 @@ std::string path_below(const ExternalSystem& system, const std::string& file) {
   const fs::path relative = fs::path(file).lexically_normal().lexically_relative(folder);
   return relative.empty() || *relative.begin() == ".." ? "" : relative.string();
 }
+
+bool has_calibration(const ExternalSystem& system) {
+  return !system.calibration_template.empty() || !system.calibration_format.empty();
+}
+
+bool is_timing_table(const ExternalSystem& system) { return fs::path(system.timings).extension() == ".csv"; }
 
 SystemName parse_system_name(std::string name) {
   SystemName result;
@@ -211,7 +277,7 @@ std::string expanded(std::string_view text, const Placeholders& values, const st
       std::vector<std::string> names;
       for (const auto& [known, unused] : values) names.push_back(known);
       const std::string near = suggestion(name, names);
-      const std::string remedy = name == "calibration"        ? "; set calibration_template"
+      const std::string remedy = name == "calibration"        ? "; set calibration_format or calibration_template"
                                  : name.starts_with("param.") ? "; add it to the table [param]"
                                  : name == "source" || name == "binary"
                                      ? "; add the table [source] with the key binary"
@@ -230,11 +296,14 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
   ExternalSystem system;
   std::vector<Setting> own_settings;
   std::vector<Setting> set_settings;
+  std::vector<Setting> timing_settings;
   for (const Setting& setting : parse_settings(text, path)) {
     if (setting.key.starts_with(kParamPrefix)) {
       system.param[setting.key.substr(kParamPrefix.size())] = text_of(setting);
     } else if (setting.key.starts_with(kVariantPrefix)) {
       set_settings.push_back(setting);
+    } else if (setting.key.starts_with(kTimingPrefix)) {
+      timing_settings.push_back(setting);
     } else {
       own_settings.push_back(setting);
     }
@@ -245,6 +314,7 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
   require_placeholders(system, own_settings);
   for (const Setting& setting : own_settings) {
     if (setting.key == "environment") require_environment(setting, system);
+    require_calibration(setting, system);
     require_source(system, setting);
     const bool is_template = setting.key == "calibration_template";
     const fs::path file = fs::absolute(path).parent_path() / system.calibration_template;
@@ -257,6 +327,7 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
   system.text = text;
   system.path = path;
   require_image(system);
+  apply_timing(system, timing_settings);
   system.variant = system.name;
   apply_sets(system, set_settings, sets);
   system.folder = fs::absolute(path).parent_path().string();
@@ -290,13 +361,15 @@ std::vector<DifferentKey> different_keys(const ExternalSystem& a, const External
   ExternalSystem copy_a = a;
   ExternalSystem copy_b = b;
   std::vector<DifferentKey> keys = different_keys(fields_of(copy_a), fields_of(copy_b));
-  std::map<std::string, std::string> all = a.param;
-  all.insert(b.param.begin(), b.param.end());
-  for (const auto& [name, unused] : all) {
-    const std::string& value_a = copy_a.param[name];
-    const std::string& value_b = copy_b.param[name];
-    if (value_a != value_b) keys.push_back({std::string(kParamPrefix) + name, value_a, value_b, ""});
-  }
+  const auto add = [&keys](std::string_view prefix, std::map<std::string, std::string> values_a,
+                           std::map<std::string, std::string> values_b) {
+    for (const auto& [name, unused] : values_b) values_a.try_emplace(name);
+    for (const auto& [name, value] : values_a) {
+      if (value != values_b[name]) keys.push_back({std::string(prefix) + name, value, values_b[name], ""});
+    }
+  };
+  add(kParamPrefix, a.param, b.param);
+  add(kTimingPrefix, a.timing, b.timing);
   return keys;
 }
 
@@ -318,8 +391,11 @@ command = ["./my_slam", "{{sequence}}", "{{out}}/trajectory.tum"]
 # "bag" (ROS 1), "mcap" (ROS 2), or "as_is" (the folder of the sequence, whatever its format)
 layout = "tum"
 
-# A text file beside this one, with placeholders such as {{fx}} {{fy}} {{cx}} {{cy}} {{width}} {{height}} {{k1}} {{T_b_c}}
-# {{depth_units_per_m}} {{fps}} {{gyro_noise}}; the result is {{calibration}}, a file in {{out}}
+# The calibration as {{calibration}}, a file in {{out}}: in the format of "kalibr", "openvins", "opencv" (also RTAB-Map),
+# "orb_slam" (ORB-SLAM3), "vins" or "toml"
+# calibration_format = "opencv"
+# or by a text file beside this one, with placeholders such as {{fx}} {{fy}} {{cx}} {{cy}} {{width}} {{height}} {{k1}} {{T_b_c}}
+# {{depth_units_per_m}} {{fps}} {{gyro_noise}}; a setting may be {{param.NAME}}
 # calibration_template = "camera.yaml.in"
 # calibration_file = "calibration.yaml"
 
@@ -330,7 +406,11 @@ trajectory = "trajectory.tum"
 # poses = "camera"
 # inverse = false
 # scale = "metric"                # "unknown": a monocular system; its scale is fitted to the ground truth
-# timings = ""                    # JSON in {{out}}: milliseconds per module, see bench/README.md
+
+# Times of its modules, a file in {{out}}: JSON {{"modules": {{"tracking": [3.1, 2.9]}}}} with milliseconds per call;
+# CSV with columns such as tracking_ms; with [timing], other columns or lines of text (without timings: what it prints)
+# timings = "timings.json"
+# timing_unit = "ms"              # or s, us, ns: of [timing]
 
 # The program is in a container: "podman", "docker" or "apptainer"; {{sequence}} and {{here}} are read-only in it
 # runner = "podman"
@@ -347,6 +427,10 @@ trajectory = "trajectory.tum"
 # Values of {{param.NAME}}; a plan varies them by [sweep] param.NAME = [500, 1000]
 [param]
 # features = 1000
+
+# Times by MODULE = column of timings = "FILE.csv", or pattern of lines with one group
+# [timing]
+# tracking = 'tracking took ([0-9.]+) ms'
 
 # A parameter set: FILE+few names a variant of the system, for `stats ablation` and comparisons
 # [variant.few]

@@ -55,6 +55,15 @@ constexpr auto enum_names(PositionScale) {
       {{PositionScale::kMetric, "metric"}, {PositionScale::kUnknown, "unknown"}}};
 }
 
+/// Unit of the times in CSV files and lines of text.
+enum class TimingUnit { kMilliseconds, kSeconds, kMicroseconds, kNanoseconds };
+constexpr auto enum_names(TimingUnit) {
+  return EnumNames<TimingUnit, 4>{{{TimingUnit::kMilliseconds, "ms"},
+                                   {TimingUnit::kSeconds, "s"},
+                                   {TimingUnit::kMicroseconds, "us"},
+                                   {TimingUnit::kNanoseconds, "ns"}}};
+}
+
 /// Program that starts a container.
 enum class ContainerRunner { kNone, kPodman, kDocker, kApptainer };
 constexpr auto enum_names(ContainerRunner) {
@@ -83,7 +92,7 @@ void visit_fields(Visitor&& field, Config& config) {
 ///
 ///   {sequence}     folder or bag of the sequence, in `layout`
 ///   {out}          output folder of the run, empty
-///   {calibration}  the file written from `calibration_template`
+///   {calibration}  the file written from `calibration_template`, or in `calibration_format`
 ///   {here}         folder of the description
 ///   {bin}          folder of the program `stillpoint`
 ///   {source}       with [source]: the work tree of the commit that is measured, else the repository itself
@@ -101,13 +110,15 @@ struct ExternalSystem {
   std::string working_folder = "{out}";               ///< relative to {here}
   std::vector<std::string> environment;               ///< "NAME=value", added to that of this program
   std::string calibration_template;                   ///< text file, relative to {here}; empty: none
+  std::string calibration_format;  ///< name of a `datasets::RigFormat`, in place of a template; empty: none
   std::string calibration_file = "calibration.yaml";  ///< in {out}: the template with its values
   std::string trajectory = "trajectory.tum";          ///< relative to {out}
   OutputFormat trajectory_format = OutputFormat::kTum;
   PosedFrame poses = PosedFrame::kCamera;
   bool inverse = false;  ///< the poses are T_c_w or T_b_w
   PositionScale scale = PositionScale::kMetric;
-  std::string timings;  ///< in {out}: JSON with modules and threads as "timings" in result.json; may be empty
+  std::string timings;  ///< in {out}: times of modules as JSON, CSV or text, see module_times.h; may be empty
+  TimingUnit timing_unit = TimingUnit::kMilliseconds;  ///< of CSV and text
   /// The program is executed in a container without network, in which {sequence} and {here} are read-only and
   /// {out} is writable, at the same paths. {bin} and [source] are errors.
   ContainerRunner runner = ContainerRunner::kNone;
@@ -115,6 +126,8 @@ struct ExternalSystem {
   std::vector<std::string> runner_options;   ///< further options of the runner, before the image
   SystemSource source;                       ///< the table [source]
   std::map<std::string, std::string> param;  ///< the table [param]: values of {param.NAME}
+  std::map<std::string, std::string>
+      timing;           ///< the table [timing]: column of a CSV, or pattern, of a module
   std::string variant;  ///< name, and "+SET" for each parameter set that was applied: that of its runs
   // Set by load_external_system.
   std::string text;           ///< of the description
@@ -135,6 +148,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("working_folder", config.working_folder);
   field("environment", config.environment);
   field("calibration_template", config.calibration_template);
+  field("calibration_format", config.calibration_format);
   field("calibration_file", config.calibration_file);
   field("trajectory", config.trajectory);
   field("trajectory_format", config.trajectory_format);
@@ -142,6 +156,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("inverse", config.inverse);
   field("scale", config.scale);
   field("timings", config.timings);
+  field("timing_unit", config.timing_unit);
   field("runner", config.runner);
   field("image", config.image);
   field("runner_options", config.runner_options);
@@ -150,6 +165,9 @@ void visit_fields(Visitor&& field, Config& config) {
 
 /// Beginning of the keys of parameters, in descriptions and in sweeps of plans.
 inline constexpr std::string_view kParamPrefix = "param.";
+
+/// Beginning of the keys of the times of modules.
+inline constexpr std::string_view kTimingPrefix = "timing.";
 
 /// A description, and the parameter sets that are applied to it in this order.
 struct SystemName {
@@ -188,6 +206,12 @@ struct SystemName {
 /// The path of a file relative to the folder of the description; empty if it is not below that folder.
 /// @param file absolute
 [[nodiscard]] std::string path_below(const ExternalSystem& system, const std::string& file);
+
+/// Whether the system has a file {calibration}.
+[[nodiscard]] bool has_calibration(const ExternalSystem& system);
+
+/// Whether `timings` names a CSV file: [timing] then has names of columns, else patterns.
+[[nodiscard]] bool is_timing_table(const ExternalSystem& system);
 
 /// A commented description with all keys, to be edited; valid as it is.
 /// @param name of the system

@@ -16,6 +16,7 @@
 
 #include "bench/process/child_process.h"
 #include "bench/systems/external_run.h"
+#include "bench/systems/module_times.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
@@ -565,13 +566,6 @@ SystemCheck trajectory_check(const ExternalSystem& system, const RunRequest& req
                           peak_memory)};
 }
 
-/// Messages of programs may contain line breaks and control characters.
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
-}
-
 }  // namespace
 
 SystemCheck check_system(const ExternalSystem& system, const CheckOptions& options) {
@@ -590,6 +584,7 @@ SystemCheck check_system(const ExternalSystem& system, const CheckOptions& optio
   const std::string finding = process_finding(system, request, options, trial);
   if (!finding.empty()) return {one_line(finding), ""};
   SystemCheck check = trajectory_check(system, request, trial.process);
+  if (check.finding.empty()) check.finding = times_problem(system, request.work, trial.process);
   check.finding = one_line(check.finding);
   return check;
 }

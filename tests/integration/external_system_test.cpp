@@ -79,6 +79,30 @@ TEST(ExternalSystem, ReadsAnExportedSequenceAndIsScored) {
   EXPECT_NE(result.out.find("| office   | replay"), std::string::npos) << result.out;
 }
 
+TEST(ExternalSystem, HasTheCalibrationInTheFormatOfAProgram) {
+  const TemporaryFolder folder;
+  folder.write("s.toml",
+               "name = \"s\"\nlayout = \"as_is\"\ncalibration_format = \"openvins\"\ncalibration_file = "
+               "\"config/rig.yaml\"\ncommand = [\"cat\", \"{calibration}\"]\n");
+  const fs::path out = folder.path() / "run";
+  const ProgramResult result = run_here(
+      folder, {"systems", "run", (folder.path() / "s.toml").string(), "office", "--out", out.string()});
+  EXPECT_EQ(result.exit_code, 1) << result.err;  // no trajectory
+  std::ifstream file(out / "program.log");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(text.find("T_imu_cam"), std::string::npos) << text << result.out;
+}
+
+TEST(ExternalSystem, ARunThatEndsOnTheInterruptionIsNotStored) {
+  const TemporaryFolder folder;
+  folder.write("s.toml",
+               "name = \"s\"\nlayout = \"as_is\"\ncommand = [\"sh\", \"-c\", \"trap 'exit 0' TERM; kill -TERM "
+               "$PPID; while :; do sleep 0.05; done\"]\n");
+  const ProgramResult result = bench_system(folder, "s.toml");
+  EXPECT_EQ(result.exit_code, 130) << result.out << result.err;
+  EXPECT_TRUE(bench::Store(store_of(folder)).runs().empty());
+}
+
 TEST(ExternalSystem, WithoutTrajectoryIsLost) {
   const TemporaryFolder folder;
   EXPECT_EQ(run_bench(folder, "layout = \"tum\"\ntrajectory = \"elsewhere.txt\"\n").exit_code, 1);

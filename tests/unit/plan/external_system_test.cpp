@@ -8,6 +8,7 @@
 
 #include "bench/plan/plan_matrix.h"
 #include "bench/systems/external_run.h"
+#include "bench/systems/module_times.h"
 #include "eval/io/text_reader.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
@@ -103,6 +104,22 @@ TEST(ExternalDescription, HashContainsTheFilesOfTheCommand) {
   EXPECT_EQ(load_external_system(contained).hash, of_image);
 }
 
+TEST(ExternalDescription, HashContainsScriptsOfShellsAndInterpreters) {
+  const TemporaryFolder folder;
+  for (const char* const keys :
+       {"command = [\"sh\", \"-c\", 'cat \"{sequence}/rgb.txt\" | \"{here}/slam.awk\" >\"{out}/t\"']",
+        "command = [\"slam\", \"--config={here}/slam.awk\"]",
+        "working_folder = \".\"\ncommand = [\"awk\", \"-f\", \"slam.awk\"]",
+        "working_folder = \"{here}\"\ncommand = [\"awk\", \"-f\", \"slam.awk\"]"}) {
+    folder.write("a b/slam.awk", "1\n");
+    const std::string file =
+        folder.write("a b/s.toml", std::string("name = \"s\"\n") + keys + "\n").string();
+    const std::string before = load_external_system(file).hash;
+    folder.write("a b/slam.awk", "2\n");
+    EXPECT_NE(load_external_system(file).hash, before) << keys;
+  }
+}
+
 TEST(ExternalDescription, FindsItsProgramBesideItAndInPath) {
   const TemporaryFolder folder;
   const fs::path program = folder.write("slam", "#!/bin/sh\n");
@@ -167,6 +184,110 @@ TEST(ExternalOutput, IsReadAsPosesOfTheCamera) {
   ASSERT_EQ(output.trajectory.poses.size(), 2u);
   EXPECT_EQ(output.trajectory.poses[1].T_w_f.p, Eigen::Vector3d(-1, 0.5, 0));
   EXPECT_NE(output.text.find("-1.000000000 0.500000000"), std::string::npos) << output.text;
+}
+
+TEST(ExternalRun, MessagesOfAFailureAreText) {
+  const TemporaryFolder folder;
+  const ExternalRun run(parse_external_system("name = \"s\"\ncommand = [\"s\"]\n", "s.toml"));
+  RunRequest request;
+  request.work = folder.path();
+  ProcessResult process;
+  process.exit_code = 3;
+  process.messages = "loading\n10 %\rnot found: \xFC\n";  // Latin-1
+  const RunOutcome outcome = run.outcome(request, process);
+  EXPECT_EQ(outcome.detail, "exited with code 3: 10 % not found: \\xfc");
+}
+
+TEST(ExternalDescription, NamesTheFormatsOfACalibration) {
+  const std::string begin = "name = \"s\"\ncommand = [\"s\", \"{calibration}\"]\n";
+  EXPECT_NO_THROW(static_cast<void>(parse_external_system(begin + "calibration_format = \"vins\"\n", "s.toml")));
+  expect_bad_description(begin + "calibration_format = \"openvin\"",
+                         {"s.toml:3: ", "\"openvin\"", "kalibr", "calibration_template"});
+}
+
+/// Times that a system with these keys wrote to a file; without a file it printed them.
+std::vector<ModuleCost> module_times(const std::string& keys, const std::string& file,
+                                     const std::string& text) {
+  const TemporaryFolder folder;
+  if (!file.empty()) folder.write(file, text);
+  ProcessResult process;
+  process.messages = text;
+  return read_module_times(parse_external_system("name = \"s\"\ncommand = [\"s\"]\n" + keys, "s.toml"),
+                           folder.path(), process);
+}
+
+void expect_bad_times(const std::string& keys, const std::string& file, const std::string& text,
+                      const std::vector<std::string>& parts) {
+  expect_input_error([&] { static_cast<void>(module_times(keys, file, text)); }, parts);
+}
+
+TEST(ExternalTimes, OfJsonAreListsOrStatistics) {
+  const std::string keys = "timings = \"t.json\"\n";
+  EXPECT_TRUE(module_times("", "", "").empty());
+  const std::vector<ModuleCost> costs =
+      module_times(keys, "t.json",
+                   R"({"timings": {"modules": {"track": [1, 2, 6]}, "threads": {"all": {"calls": 2,
+                      "mean": 3.5, "median": 3.5, "p95": 4, "max": 4}}}})");
+  ASSERT_EQ(costs.size(), 2u);
+  EXPECT_EQ(costs[0].module + " per " + costs[0].per, "track per call");
+  EXPECT_EQ(costs[0].calls, 3);
+  EXPECT_EQ(costs[0].mean_ms, 3.0);
+  EXPECT_EQ(costs[0].median_ms, 2.0);
+  EXPECT_EQ(costs[0].max_ms, 6.0);
+  EXPECT_EQ(costs[1].module + " per " + costs[1].per, "all per frame");
+  EXPECT_EQ(costs[1].mean_ms, 3.5);
+  expect_bad_times(keys, "t.json", R"({"modules": {"track": {"mean": 3, "calls": 1}}})",
+                   {"t.json: modules.track", "\"median\"", "a list of milliseconds"});
+  expect_bad_times(keys, "t.json", R"({"modules": {"track": [1, "2"]}})",
+                   {"modules.track", "\"2\"", "number"});
+  expect_bad_times(keys, "t.json", R"({"modules": {"track": [-1]}})", {"modules.track", "-1 is no time"});
+  expect_bad_times(keys, "t.json", R"({"track": [1]})", {"t.json", "\"modules\"", "[timing]"});
+  expect_bad_times(keys, "t.json", "track 3.1\n", {"t.json", "is no JSON", "[timing]"});
+  expect_bad_times(keys, "", "", {"t.json", "was not written", "timings"});
+}
+
+TEST(ExternalTimes, OfCsvAreColumns) {
+  const std::string keys = "timings = \"t.csv\"\n";
+  const std::vector<ModuleCost> costs = module_times(keys, "t.csv",
+                                                     "\xEF\xBB\xBF"
+                                                     "frame,track_ms,map_ms\r\n0,1.5,\r\n1,2.5,8\r\n");
+  ASSERT_EQ(costs.size(), 2u);
+  EXPECT_EQ(costs[0].module, "map");
+  EXPECT_EQ(costs[0].calls, 1);
+  EXPECT_EQ(costs[1].module, "track");
+  EXPECT_EQ(costs[1].mean_ms, 2.0);
+  const std::string table = keys + "timing_unit = \"s\"\n[timing]\nupdate = \"msckf update\"\n";
+  const std::vector<ModuleCost> of_seconds =
+      module_times(table, "t.csv", "# timestamp (sec),tracking,msckf update\n1.0,0.1,0.002\n");
+  ASSERT_EQ(of_seconds.size(), 1u);
+  EXPECT_EQ(of_seconds[0].module, "update");
+  EXPECT_DOUBLE_EQ(of_seconds[0].max_ms, 2.0);
+  expect_bad_times(keys, "t.csv", "frame;track\n0;1\n", {"t.csv:1", "\"_ms\"", "frame, track", "[timing]"});
+  expect_bad_times(table, "t.csv", "t,update\n0,1\n", {"t.csv:1", "\"msckf update\" of timing.update"});
+  expect_bad_times(keys, "t.csv", "f;a_ms\n0;1,5\n", {"t.csv:2", "\"1,5\"", "decimal point"});
+  expect_bad_times(keys, "t.csv", "f,a_ms\n0,1\n1\n", {"t.csv:3", "1 cells", "whole rows"});
+}
+
+TEST(ExternalTimes, OfLinesAreGroupsOfAPattern) {
+  const std::string table = "[timing]\ntrack = 'track(?:ing)?: ([0-9.eE-]+) us'\n";
+  const std::string lines = "frame 0 tracking: 1500 us\nloop\nframe 1 track: 500 us, map 9 ms\n";
+  for (const char* const file : {"", "log.txt"}) {
+    const std::string timings = *file == '\0' ? "" : "timings = \"log.txt\"\n";
+    const std::vector<ModuleCost> costs =
+        module_times(timings + "timing_unit = \"us\"\n" + table, file, lines);
+    ASSERT_EQ(costs.size(), 1u);
+    EXPECT_EQ(costs[0].module, "track");
+    EXPECT_EQ(costs[0].calls, 2);
+    EXPECT_DOUBLE_EQ(costs[0].mean_ms, 1.0);
+  }
+  expect_bad_times(table, "", "Tracking: 3 us\n",
+                   {"messages of the program", "timing.track", "case-sensitive"});
+  expect_bad_times("[timing]\ntrack = 'track (.*) ms'\n", "", "track 1,5 ms\n",
+                   {"messages of the program:1: timing.track", "\"1,5\""});
+  const std::string begin = "name = \"s\"\ncommand = [\"s\"]\n";
+  expect_bad_description(begin + "[timing]\na = 'no group'", {"s.toml:4: ", "timing.a", "one group"});
+  expect_bad_description(begin + "[timing]\na = '(open'", {"s.toml:4: ", "timing.a", "regular expression"});
+  expect_bad_description(begin + "timing_unit = \"s\"", {"s.toml: ", "timing_unit", "[timing]"});
 }
 
 TEST(ExternalRun, StartsItsProgramInAContainer) {
