@@ -107,7 +107,7 @@ row bench/diagnose/evidence $messages datasets
 row bench/diagnose $common bench/diagnose/evidence datasets eval/metrics eval/trajectory bench/config bench/model bench/run
 row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/config bench/run \
   bench/profile
-row bench/systems $messages datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/compare eval/io eval/trajectory bench/model bench/config bench/process \
+row bench/systems $messages datasets datasets/cache datasets/calibration datasets/faults datasets/synthetic/sequence eval eval/compare eval/io eval/metrics eval/trajectory bench/model bench/config bench/process \
   bench/run bench/profile bench/record
 row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems

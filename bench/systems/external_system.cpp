@@ -277,7 +277,7 @@ std::string expanded(std::string_view text, const Placeholders& values, const st
       std::vector<std::string> names;
       for (const auto& [known, unused] : values) names.push_back(known);
       const std::string near = suggestion(name, names);
-      const std::string remedy = name == "calibration"        ? "; set calibration_format or calibration_template"
+      const std::string remedy = name == "calibration" ? "; set calibration_format or calibration_template"
                                  : name.starts_with("param.") ? "; add it to the table [param]"
                                  : name == "source" || name == "binary"
                                      ? "; add the table [source] with the key binary"
@@ -373,9 +373,10 @@ std::vector<DifferentKey> different_keys(const ExternalSystem& a, const External
   return keys;
 }
 
-std::string description_template(const std::string& name) {
-  return fmt::format(
-      R"(# Description of a SLAM system for stillpoint; manual: bench/README.md, "Any system".
+namespace {
+
+constexpr const char* kDescription =
+    R"(# Description of a SLAM system for stillpoint; manual: bench/README.md, "Any system".
 # Keys that are commented out show their defaults. Try it: stillpoint systems check FILE
 name = {}
 version = "1"                     # of the program; runs of another version are another build
@@ -435,8 +436,12 @@ trajectory = "trajectory.tum"
 # A parameter set: FILE+few names a variant of the system, for `stats ablation` and comparisons
 # [variant.few]
 # features = 300
-)",
-      toml_quoted(name));
+)";
+
+}  // namespace
+
+std::string description_template(const std::string& name) {
+  return fmt::format(kDescription, toml_quoted(name));
 }
 
 Placeholders calibration_placeholders(const Rig& rig, const SensorRates& rates) {

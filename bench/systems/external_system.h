@@ -107,9 +107,9 @@ struct ExternalSystem {
   std::string version = "unknown";   ///< the build of its runs
   std::vector<std::string> command;  ///< program and arguments; a program with a slash: relative to {here}
   ExportLayout layout = ExportLayout::kTum;
-  std::string working_folder = "{out}";               ///< relative to {here}
-  std::vector<std::string> environment;               ///< "NAME=value", added to that of this program
-  std::string calibration_template;                   ///< text file, relative to {here}; empty: none
+  std::string working_folder = "{out}";  ///< relative to {here}
+  std::vector<std::string> environment;  ///< "NAME=value", added to that of this program
+  std::string calibration_template;      ///< text file, relative to {here}; empty: none
   std::string calibration_format;  ///< name of a `datasets::RigFormat`, in place of a template; empty: none
   std::string calibration_file = "calibration.yaml";  ///< in {out}: the template with its values
   std::string trajectory = "trajectory.tum";          ///< relative to {out}

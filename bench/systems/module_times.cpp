@@ -145,8 +145,8 @@ char separator_of(std::string_view header) {
 
 /// Index of the column of each module.
 std::map<std::string, std::size_t> time_columns(const ExternalSystem& system,
-                                              const std::vector<std::string>& header,
-                                              const std::string& place) {
+                                                const std::vector<std::string>& header,
+                                                const std::string& place) {
   std::map<std::string, std::size_t> columns;
   for (const auto& [module, column] : system.timing) {
     const auto found = std::ranges::find(header, column);
@@ -168,7 +168,7 @@ std::map<std::string, std::size_t> time_columns(const ExternalSystem& system,
 }
 
 std::map<std::string, Milliseconds> times_of_csv(const ExternalSystem& system, const std::string& text,
-                                              const std::string& file) {
+                                                 const std::string& file) {
   eval::LineReader lines(text);
   std::string_view header = lines.next().value_or("");
   if (header.starts_with('#')) header.remove_prefix(1);
@@ -201,7 +201,7 @@ std::map<std::string, Milliseconds> times_of_csv(const ExternalSystem& system, c
 // ---- Lines of text.
 
 std::map<std::string, Milliseconds> times_of_lines(const ExternalSystem& system, const std::string& text,
-                                                const std::string& file) {
+                                                   const std::string& file) {
   constexpr std::size_t kMaxLine = 4096;  // std::regex recurses over the characters of a line
   std::map<std::string, Milliseconds> times;
   for (const auto& [module, pattern] : system.timing) {

@@ -95,9 +95,10 @@ TEST(ExternalSystem, HasTheCalibrationInTheFormatOfAProgram) {
 
 TEST(ExternalSystem, ARunThatEndsOnTheInterruptionIsNotStored) {
   const TemporaryFolder folder;
-  folder.write("s.toml",
-               "name = \"s\"\nlayout = \"as_is\"\ncommand = [\"sh\", \"-c\", \"trap 'exit 0' TERM; kill -TERM "
-               "$PPID; while :; do sleep 0.05; done\"]\n");
+  folder.write(
+      "s.toml",
+      "name = \"s\"\nlayout = \"as_is\"\ncommand = [\"sh\", \"-c\", \"trap 'exit 0' TERM; kill -TERM "
+      "$PPID; while :; do sleep 0.05; done\"]\n");
   const ProgramResult result = bench_system(folder, "s.toml");
   EXPECT_EQ(result.exit_code, 130) << result.out << result.err;
   EXPECT_TRUE(bench::Store(store_of(folder)).runs().empty());

@@ -112,8 +112,7 @@ TEST(ExternalDescription, HashContainsScriptsOfShellsAndInterpreters) {
         "working_folder = \".\"\ncommand = [\"awk\", \"-f\", \"slam.awk\"]",
         "working_folder = \"{here}\"\ncommand = [\"awk\", \"-f\", \"slam.awk\"]"}) {
     folder.write("a b/slam.awk", "1\n");
-    const std::string file =
-        folder.write("a b/s.toml", std::string("name = \"s\"\n") + keys + "\n").string();
+    const std::string file = folder.write("a b/s.toml", std::string("name = \"s\"\n") + keys + "\n").string();
     const std::string before = load_external_system(file).hash;
     folder.write("a b/slam.awk", "2\n");
     EXPECT_NE(load_external_system(file).hash, before) << keys;
@@ -200,7 +199,8 @@ TEST(ExternalRun, MessagesOfAFailureAreText) {
 
 TEST(ExternalDescription, NamesTheFormatsOfACalibration) {
   const std::string begin = "name = \"s\"\ncommand = [\"s\", \"{calibration}\"]\n";
-  EXPECT_NO_THROW(static_cast<void>(parse_external_system(begin + "calibration_format = \"vins\"\n", "s.toml")));
+  EXPECT_NO_THROW(
+      static_cast<void>(parse_external_system(begin + "calibration_format = \"vins\"\n", "s.toml")));
   expect_bad_description(begin + "calibration_format = \"openvin\"",
                          {"s.toml:3: ", "\"openvin\"", "kalibr", "calibration_template"});
 }
