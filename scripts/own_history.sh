@@ -1,9 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Measures commits of this repository by `stillpoint history` on three rendered sequences with people, 3 seeds, and makes the
-# dashboard. The same command continues. Each commit is built: 15 to 35 core-minutes, 6 to 8 where it has the minimal preset.
+# dashboard. The same command continues. Each commit is built, the first ones, without a minimal preset, in half an hour of a core.
 # scripts/own_history.sh FOLDER COMMIT..., e.g. scripts/own_history.sh /tmp/history 0aa94df1 HEAD
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+if (($# < 2)); then
+  echo "scripts/own_history.sh: name a folder and commits, e.g. /tmp/history 0aa94df1 HEAD" >&2
+  exit 2
+fi
 folder=$(realpath -m "$1")
 shift
 stillpoint=$PWD/build/release/stillpoint
@@ -23,12 +27,12 @@ trajectory = "run/trajectory.tum"
 poses = "camera"
 [source]
 git = "$PWD"
-build = ["sh", "-c", "p=release; grep -q '\"minimal\"' CMakePresets.json && p=minimal; cmake --preset \$p -B build/own && cmake --build build/own --target stillpoint"]
+build = ["sh", "-c", "export CCACHE_BASEDIR=\$PWD; p=release; grep -q '\"minimal\"' CMakePresets.json && p=minimal; cmake --preset \$p -B build/own && cmake --build build/own --target stillpoint"]
 binary = "build/own/stillpoint"
 EOF
 cat > "$folder/plan.toml" <<EOF
 title = "The default over commits"
-systems = ["stillpoint.toml"]
+systems = ["$folder/stillpoint.toml"]
 seeds = [1, 2, 3]
 
 [recorded]
