@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A small rendered sequence with IMU data, created once per test program, and modifiable copies of it.
+/// A small sequence with IMU data, rendered once for the programs of a build, and modifiable copies of it.
 #pragma once
 
 #include <filesystem>
