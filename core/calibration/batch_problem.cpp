@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -208,6 +210,7 @@ void BatchProblem::add_landmark(BatchLandmark& landmark) {
   ceres::LossFunction* loss = &huber_;
   if (options_.is_first) loss = &cauchy_;
   const double height = input_.stated.rig.camera.height;
+  int rows = landmark_ends_.empty() ? 0 : landmark_ends_.back();
   ++landmark_count_;
   problem_.AddParameterBlock(landmark.p_w.data(), 3);
   for (BatchObservation& observation : landmark.observations) {
@@ -220,19 +223,25 @@ void BatchProblem::add_landmark(BatchLandmark& landmark) {
                                  .row_fraction = (feature.pixel.y() + 0.5) / height - 0.5},
         state_.pixel_sigma_px);
     Seen seen{&observation, &landmark.p_w, &pixel_factors_.back(), nullptr};
-    if (observation.pixel_is_inlier)
-      problem_.AddResidualBlock(seen.pixel, loss, pose, shared.T_b_c.data(), shared.camera.data(),
-                                &shared.readout_s, landmark.p_w.data());
+    if (observation.pixel_is_inlier) {
+      landmark_blocks_.push_back(problem_.AddResidualBlock(seen.pixel, loss, pose, shared.T_b_c.data(),
+                                                           shared.camera.data(), &shared.readout_s,
+                                                           landmark.p_w.data()));
+      rows += 2;
+    }
     if (const auto measurement = depth_of(observation, landmark.p_w)) {
       depth_factors_.emplace_back(*measurement, state_.inverse_depth_sigma);
       seen.depth = &depth_factors_.back();
-      if (observation.pixel_is_inlier)
-        problem_.AddResidualBlock(seen.depth, loss, pose, shared.T_b_c.data(), shared.T_c_d.data(),
-                                  shared.depth_camera.data(), shared.depth.data(), landmark.p_w.data(),
-                                  &shared.readout_s, &shared.depth_delay_s);
+      if (observation.pixel_is_inlier) {
+        landmark_blocks_.push_back(problem_.AddResidualBlock(
+            seen.depth, loss, pose, shared.T_b_c.data(), shared.T_c_d.data(), shared.depth_camera.data(),
+            shared.depth.data(), landmark.p_w.data(), &shared.readout_s, &shared.depth_delay_s));
+        ++rows;
+      }
     }
     seen_.push_back(seen);
   }
+  landmark_ends_.push_back(rows);
 }
 
 void BatchProblem::add_linear_prior(double* block, const Eigen::VectorXd& mean, const Eigen::MatrixXd& A) {
@@ -413,21 +422,37 @@ void BatchProblem::update_imu_noise() {
 
 namespace {
 
-/// The diagonal of the inverse of J^T J at some columns; nullopt if it is singular.
-/// @param J row-major sparse
-std::optional<Eigen::VectorXd> variances(const ceres::CRSMatrix& J, const std::vector<int>& columns) {
+/// Weighted residuals and their Jacobian; the rows up to the last end are those of landmarks.
+struct Linearization {
+  ceres::CRSMatrix J;
+  std::vector<double> r;
+  std::vector<int> landmark_ends;  ///< number of rows up to the last one of each landmark
+};
+
+/// The variances of the numbers at some columns, see calibrate.h; nullopt if the information is singular.
+std::optional<Eigen::VectorXd> variances(const Linearization& at, const std::vector<int>& columns) {
   using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+  const ceres::CRSMatrix& J = at.J;
   const Eigen::Map<const RowMajor> jacobian(J.num_rows, J.num_cols, static_cast<int>(J.values.size()),
                                             J.rows.data(), J.cols.data(), J.values.data());
   Eigen::SparseMatrix<double> information = RowMajor(jacobian.transpose()) * RowMajor(jacobian);
   for (int i = 0; i < information.cols(); ++i) information.coeffRef(i, i) += kLeastInformation;
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(information);
   if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0.0)) return std::nullopt;
+  const Eigen::Map<const Eigen::VectorXd> r(at.r.data(), static_cast<Eigen::Index>(at.r.size()));
   Eigen::VectorXd result(static_cast<int>(columns.size()));
   for (int i = 0; i < result.size(); ++i) {
     const int column = columns[static_cast<std::size_t>(i)];
     const Eigen::VectorXd solution = solver.solve(Eigen::VectorXd::Unit(information.cols(), column));
-    result[i] = solution[column];
+    const Eigen::VectorXd gain = jacobian * solution;
+    result[i] = 0.0;
+    int begin = 0;
+    for (const int end : at.landmark_ends) {
+      const double change = gain.segment(begin, end - begin).dot(r.segment(begin, end - begin));
+      result[i] += change * change;
+      begin = end;
+    }
+    result[i] += gain.tail(gain.size() - begin).squaredNorm();
   }
   if (!result.allFinite() || !(result.array() > 0.0).all()) return std::nullopt;
   return result;
@@ -447,6 +472,12 @@ std::optional<SharedVector> BatchProblem::deviations() {
        {&shared.time_offset_s, SharedValue::kTimeOffset},
        {&shared.depth_delay_s, SharedValue::kDepthDelay}}};
   ceres::Problem::EvaluateOptions options;
+  options.residual_blocks = landmark_blocks_;
+  std::vector<ceres::ResidualBlockId> all;
+  problem_.GetResidualBlocks(&all);
+  const std::set<ceres::ResidualBlockId> of_landmarks(landmark_blocks_.begin(), landmark_blocks_.end());
+  std::ranges::copy_if(all, std::back_inserter(options.residual_blocks),
+                       [&](ceres::ResidualBlockId id) { return !of_landmarks.contains(id); });
   problem_.GetParameterBlocks(&options.parameter_blocks);
   std::erase_if(options.parameter_blocks,
                 [this](const double* block) { return problem_.IsParameterBlockConstant(block); });
@@ -466,9 +497,9 @@ std::optional<SharedVector> BatchProblem::deviations() {
   }
   SharedVector result = SharedVector::Zero();
   if (columns.empty()) return result;
-  ceres::CRSMatrix jacobian;
-  if (!problem_.Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return std::nullopt;
-  const std::optional<Eigen::VectorXd> diagonal = variances(jacobian, columns);
+  Linearization at{.J = {}, .r = {}, .landmark_ends = landmark_ends_};
+  if (!problem_.Evaluate(options, nullptr, &at.r, nullptr, &at.J)) return std::nullopt;
+  const std::optional<Eigen::VectorXd> diagonal = variances(at, columns);
   if (!diagonal) return std::nullopt;
   for (std::size_t i = 0; i < values.size(); ++i)
     result[values[i]] = std::sqrt((*diagonal)[static_cast<Eigen::Index>(i)]);

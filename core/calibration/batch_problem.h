@@ -128,6 +128,9 @@ class BatchProblem {
   std::deque<PosePrior> pose_priors_;
   std::vector<Seen> seen_;
   std::size_t landmark_count_ = 0;
+  /// Residual blocks of all landmarks, and the number of residuals up to the last one of each landmark.
+  std::vector<ceres::ResidualBlockId> landmark_blocks_;
+  std::vector<int> landmark_ends_;
   ceres::Problem problem_;
 };
 

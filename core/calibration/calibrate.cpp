@@ -25,14 +25,15 @@ constexpr double kObservedRatio = 0.5;  // of deviation and prior, below which a
 constexpr double kDifferentSigmas = 3.0;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Description of a shared value. The systematic deviations are those of recordings whose halves agree:
-/// tracking has a bias of up to half a pixel on rendered sequences with an exact calibration.
+/// Description of a shared value. The systematic deviations are those of recordings of 640x480 pixels whose
+/// halves agree: tracking has a bias of up to half a pixel on rendered sequences with an exact calibration.
 struct SharedDescription {
   const char* name;
   const char* unit;
   double factor;      ///< from SI units
   double systematic;  ///< deviation that no residual shows, in SI units; of focal lengths: relative
 };
+constexpr double kSystematicWidth_px = 640.0;
 
 constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"fx", "px", 1.0, 7e-4},
@@ -64,10 +65,21 @@ constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"depth delay", "ms", 1e3, 1e-3},
 }};
 
-/// @param stated value, for focal lengths
-double systematic_sigma(SharedValue value, double stated) {
-  const bool is_focal = value == kFx || value == kFy || value == kDepthFx || value == kDepthFy;
-  return kDescriptions[static_cast<std::size_t>(value)].systematic * (is_focal ? stated : 1.0);
+/// A bias in pixels is a larger angle, and a larger fraction of the focal length, in a smaller image.
+double systematic_sigma(SharedValue value, const RigCalibration& stated) {
+  const SharedValues values = shared_values(stated);
+  const double sigma = kDescriptions[static_cast<std::size_t>(value)].systematic;
+  const auto scale = [](const Camera& camera) { return std::max(1.0, kSystematicWidth_px / camera.width); };
+  const double color = scale(stated.rig.camera);
+  if (value == kFx || value == kFy) return color * sigma * values.camera[value == kFx ? 0 : 1];
+  if (value == kDepthFx || value == kDepthFy)
+    return scale(stated.depth_camera) * sigma * values.depth_camera[value == kDepthFx ? 0 : 1];
+  const auto is_rotation = [value](SharedValue pose) {
+    const int component = static_cast<int>(value) - static_cast<int>(pose);
+    return component >= 3 && component < 6;
+  };
+  const bool is_angle = value == kK1 || value == kK2 || is_rotation(kDepthPose) || is_rotation(kExtrinsics);
+  return is_angle ? color * sigma : sigma;
 }
 
 void set(SharedFlags& flags, SharedValue first, int count, bool value) {
@@ -235,7 +247,7 @@ bool set_back_unobserved(Solution& solution, const RigCalibration& stated, const
   SharedValues& to = solution.state.shared;
   const SharedVector& sigmas = *solution.sigmas;
   const double readout_sigma_s =
-      std::hypot(sigmas[static_cast<int>(kReadout)], systematic_sigma(kReadout, 0.0));
+      std::hypot(sigmas[static_cast<int>(kReadout)], systematic_sigma(kReadout, stated));
   const bool readout_agrees = std::abs(to.readout_s - from.readout_s) < kDifferentSigmas * readout_sigma_s;
   bool changed = false;
   const auto visit = [&](SharedValue value, double& number, double stated_number) {
@@ -377,7 +389,7 @@ class Calibration {
       if (!listed[k]) continue;
       const SharedDescription& description = kDescriptions[k];
       const bool is_observed = solution_.sigmas && observed_[k];
-      const double systematic = systematic_sigma(static_cast<SharedValue>(i), stated[i]);
+      const double systematic = systematic_sigma(static_cast<SharedValue>(i), input_.stated);
       const double sigma = is_observed
                                ? std::hypot(result_.deviation_factor * (*solution_.sigmas)[i], systematic)
                                : priors_[i];

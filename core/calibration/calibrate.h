@@ -16,10 +16,17 @@
 /// integrate the inertial samples again at the new biases and time offset. The first round uses fixed
 /// deviations and Cauchy losses.
 ///
-/// Standard deviations: diagonal of the inverse of the information of all parameters (Triggs et al. 2000,
-/// Sec. 9), with the estimated deviations of the residuals. Errors of one recording are correlated over time:
-/// the two halves of the keyframes are estimated separately, too, and if their estimates x_1 and x_2 differ
-/// by more than their deviations s_1 and s_2 allow, all deviations are multiplied by
+/// Standard deviations: with the Jacobian J of all weighted residuals r, x = (J^T J)^-1 e_p is the gain of
+/// the parameter p. Residuals of a landmark l are correlated, as tracking errors last for many frames and
+/// keyframes are close; those of different landmarks are taken as independent, as is all other data (o). The
+/// variance is that of estimation with clusters (Liang and Zeger 1986), here with landmarks as clusters:
+///
+///   sigma_p^2 = sum_l (r_l^T J_l x)^2 + |J_o x|^2
+///
+/// which is the diagonal of (J^T J)^-1 if all residuals are independent. What is left are errors that
+/// landmarks have in common: the two halves of the keyframes are estimated separately, too, and if their
+/// estimates x_1 and x_2 differ by more than their deviations s_1 and s_2 allow, all deviations are
+/// multiplied by
 ///
 ///   sqrt(mean_p (x_1p - x_2p)^2 / (s_1p^2 + s_2p^2))
 ///
