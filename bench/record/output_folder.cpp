@@ -125,6 +125,11 @@ bool has_content(const fs::path& file) {
   return fs::exists(file, error) && fs::file_size(file, error) > 0;
 }
 
+bool exists_in(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  return fs::exists(folder / name, error);
+}
+
 }  // namespace
 
 void require_safe_output(const fs::path& file, const OutputRules& rules) {
@@ -143,18 +148,19 @@ void write_output(const fs::path& file, const std::string& text, const OutputRul
   write_files(target.parent_path(), {{target.filename().string(), text}});
 }
 
+bool has_earlier_output(const fs::path& folder, const OutputLayout& layout) {
+  return std::ranges::any_of(layout.marks, [&](const std::vector<std::string>& set) {
+    return std::ranges::all_of(set, [&](const std::string& name) { return exists_in(folder, name); });
+  });
+}
+
 void require_safe_folder(const fs::path& folder, const OutputLayout& layout,
                          const std::vector<fs::path>& inputs) {
   refuse_inputs(folder, inputs);
-  const auto exists = [&](const std::string& name) {
-    std::error_code error;
-    return fs::exists(folder / name, error);
-  };
-  const bool has_marks = std::ranges::any_of(
-      layout.marks, [&](const std::vector<std::string>& set) { return std::ranges::all_of(set, exists); });
   for (const std::string& name : layout.names) refuse_inputs(folder / name, inputs);
-  const auto existing = std::ranges::find_if(layout.names, exists);
-  if (existing == layout.names.end() || has_marks) return;
+  const auto existing =
+      std::ranges::find_if(layout.names, [&](const std::string& name) { return exists_in(folder, name); });
+  if (existing == layout.names.end() || has_earlier_output(folder, layout)) return;
   throw InputError((folder / *existing).string(),
                    "exists, but not as part of an earlier output; remove it or choose another output folder");
 }

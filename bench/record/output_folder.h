@@ -49,6 +49,9 @@ struct OutputLayout {
       marks;  ///< sets of names; an earlier output contains one complete set
 };
 
+/// Whether a folder contains an earlier output of this kind.
+[[nodiscard]] bool has_earlier_output(const std::filesystem::path& folder, const OutputLayout& layout);
+
 /// Checks an output folder before the work begins. The files of an earlier output are replaced; a folder that
 /// contains one of the names but no set of marks was not written by this program.
 /// @param inputs as in OutputRules

@@ -49,6 +49,20 @@ TEST(BenchCommand, ExecutesAllVariantsOnAllSequencesAndPrintsATable) {
   EXPECT_NE(result.out.find("| office        | vo         | ok      |"), std::string::npos) << result.out;
 }
 
+TEST(BenchCommand, WritesOnlyTheStoreThatItIsTold) {
+  const TemporaryFolder folder, working_folder;
+  const fs::path plan = folder.write("plan.toml", plan_text("\"vo\""));
+  const fs::path before = fs::current_path();
+  fs::current_path(working_folder.path());
+  const ProgramResult result =
+      run_program({"bench", plan.string(), "--store", (folder.path() / "store.sqlite").string()},
+                  {.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()}});
+  fs::current_path(before);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(fs::is_empty(working_folder.path()));
+  EXPECT_NE(result.out.find("| office        | vo      | ok      |"), std::string::npos) << result.out;
+}
+
 TEST(BenchCommand, PrintsAndWritesWhereTheTimeWent) {
   const TemporaryFolder folder;
   const ProgramResult result = run_bench(folder, "\"stillpoint\"");

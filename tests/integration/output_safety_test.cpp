@@ -87,13 +87,24 @@ TEST(RunOutput, DoesNotReplaceFilesOfOtherPrograms) {
   EXPECT_EQ(text_of(photo), "photo");
 }
 
+TEST(RunOutput, ReplacesAnEarlierRunOnlyWithForce) {
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments = {
+      "run", rendered_sequence().string(), "--out", folder.path().string(), "--max-frames", "10"};
+  ASSERT_NE(run_program(arguments).exit_code, 2);
+  expect_rejected(run_program(arguments), {"contains an earlier run", "--force"});
+  arguments.insert(arguments.end(), {"--variant", "vo", "--force"});
+  ASSERT_NE(run_program(arguments).exit_code, 2);
+  EXPECT_NE(text_of(folder.path() / "manifest.json").find("\"vo\""), std::string::npos);
+}
+
 TEST(RunOutput, KeepsTheResultIfADumpFails) {
   const TemporaryFolder folder;
-  const std::vector<std::string> arguments = {"run",          rendered_sequence().string(),
-                                              "--out",        folder.path().string(),
-                                              "--max-frames", "20",
-                                              "--dump",       "cost",
-                                              "--dump",       "labels"};
+  std::vector<std::string> arguments = {"run",          rendered_sequence().string(),
+                                        "--out",        folder.path().string(),
+                                        "--max-frames", "20",
+                                        "--dump",       "cost",
+                                        "--dump",       "labels"};
   const ProgramResult result = run_program(arguments);  // too short for a trend of the cost
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("warning: --dump cost: "), std::string::npos) << result.err;
@@ -103,6 +114,7 @@ TEST(RunOutput, KeepsTheResultIfADumpFails) {
 
   fs::remove(folder.path() / "labels.csv");
   fs::create_directory(folder.path() / "labels.csv");
+  arguments.emplace_back("--force");
   const ProgramResult again = run_program(arguments);
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_NE(again.err.find("warning: --dump labels: "), std::string::npos) << again.err;

@@ -165,7 +165,8 @@ TEST(RunCommand, WritesImagesOfTheWorstFramesOnly) {
 
 TEST(RunCommand, RemovesWhatOnlyAnEarlierRunWrote) {
   const TemporaryFolder out;
-  const auto run = [&](const std::vector<std::string>& options) {
+  const auto run = [&](std::vector<std::string> options) {
+    options.emplace_back("--force");
     return run_program(run_of(rendered_sequence(), out.path(), options)).exit_code;
   };
   ASSERT_EQ(run({"--max-frames", "20"}), 0);
@@ -181,7 +182,7 @@ TEST(RunCommand, RemovesWhatOnlyAnEarlierRunWrote) {
 TEST(RunCommand, ImagesAreReplacedWhenTheNewRunHasEnded) {
   const TemporaryFolder out;
   const auto run = [&](std::vector<std::string> options) {
-    options.insert(options.end(), {"--max-frames", "20"});
+    options.insert(options.end(), {"--max-frames", "20", "--force"});
     return run_program(run_of(rendered_sequence(), out.path(), options)).exit_code;
   };
   ASSERT_EQ(run({"--images", "3"}), 0);

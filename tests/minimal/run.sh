@@ -55,7 +55,7 @@ grep -q compat:tum "$scratch/output" || fail "eval prints no protocol"
 "$program" device info >/dev/null || fail "device info"
 
 refused "has no renderer" run market
-refused "writes no MCAP files" run "$sequence" --variant vo --set detector.kind=none --out "$scratch/run" --mcap "$scratch/run.mcap"
+refused "writes no MCAP files" run "$sequence" --variant vo --set detector.kind=none --out "$scratch/mcap_run" --mcap "$scratch/run.mcap"
 refused "reads none" run "$(mktemp -p "$scratch" XXXX.bag)"
 refused "reads none" eval "$(mktemp -p "$scratch" XXXX.mcap):/odom" "$scratch/run/trajectory.tum"
 refused "writes none" eval "$sequence/groundtruth.txt" "$scratch/run/trajectory.tum" --plot "$scratch/plot.pdf"

@@ -33,11 +33,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kDefaultStore = "build/bench/store.sqlite";
 constexpr const char* kProfileFile = "profile.json";
 
 struct BenchArguments {
   std::string plan;
-  std::string store = "build/bench/store.sqlite";
+  std::string store = kDefaultStore;
   std::string out;
   int jobs = 0;  ///< 0 = default of the executor
   std::vector<std::string> filters;
@@ -134,14 +135,22 @@ std::string published_tables(const PlanMatrix& matrix, const Store& store) {
   return text;
 }
 
+/// Folder of the table and the profile; empty: they are only printed.
+fs::path output_folder(const BenchArguments& arguments, const BenchPlan& plan) {
+  if (!arguments.out.empty()) return arguments.out;
+  return arguments.store == kDefaultStore ? fs::path("build/bench") / plan.name : fs::path();
+}
+
+/// @param out see `output_folder`
 void print_rows(const PlanMatrix& matrix, const std::vector<BenchRow>& rows, const std::string& published,
                 const fs::path& out) {
   const std::string title =
       matrix.plan.title + (interrupt_requested() ? " (interrupted: not all runs were executed)" : "");
   const std::string table = markdown_table(rows) + published;
+  std::cout << title << "\n\n" << table << '\n';
+  if (out.empty()) return;
   write_files(out, {{"table.md", "# " + title + "\n\n" + table}, {"table.json", json_table(title, rows)}});
-  std::cout << title << "\n\n"
-            << table << "\nwritten to " << (out / "table.md").string() << " and table.json\n";
+  std::cout << "written to " << (out / "table.md").string() << " and table.json\n";
 }
 
 /// @throws InputError if there is nothing to execute, as the table would be empty
@@ -191,12 +200,13 @@ int run_bench(const BenchArguments& arguments) {
     return kExitOk;
   }
   require_available_run(matrix);
-  const fs::path out =
-      arguments.out.empty() ? fs::path("build/bench") / matrix.plan.name : fs::path(arguments.out);
-  require_safe_folder(
-      out, {.names = {"table.md", "table.json", kProfileFile}, .marks = {{"table.md", "table.json"}}},
-      {arguments.store});
-  require_writable(out);
+  const fs::path out = output_folder(arguments, matrix.plan);
+  if (!out.empty()) {
+    require_safe_folder(
+        out, {.names = {"table.md", "table.json", kProfileFile}, .marks = {{"table.md", "table.json"}}},
+        {arguments.store});
+    require_writable(out);
+  }
   const auto start = std::chrono::steady_clock::now();
   const PlanReport report = execute_plan(
       matrix, arguments.store, {.jobs = arguments.jobs, .retry = arguments.retry}, arguments.execution);
@@ -208,7 +218,7 @@ int run_bench(const BenchArguments& arguments) {
                            matrix.runs.size(), report.cached, arguments.store);
   if (report.executed > 0) std::cout << rate_text(report.executed, elapsed.count()) << '\n';
   if (report.profile.runs > 0) {
-    write_files(out, {{kProfileFile, profile_json(report.profile)}});
+    if (!out.empty()) write_files(out, {{kProfileFile, profile_json(report.profile)}});
     std::cout << profile_text(report.profile);
   }
   return std::max(exit_code(rows), incomplete_code(matrix, report));
@@ -223,8 +233,11 @@ Command bench_command() {
       .summary = "Execute the runs of a plan that are not in the store; print a table of scores and times",
       .example = "bench quick --store /tmp/store.sqlite --jobs 2",
       .options = {{"PLAN", "Plan: an embedded name (quick) or a TOML file", &arguments->plan},
-                  {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
-                  {"--out", "Output folder of the table [build/bench/PLAN]", &arguments->out},
+                  {"--store", fmt::format("Database of runs [{}]", kDefaultStore), &arguments->store},
+                  {"--out",
+                   "Output folder of table.md, table.json and profile.json [none with --store, else "
+                   "build/bench/PLAN]",
+                   &arguments->out},
                   {"--jobs",
                    "Number of concurrent accuracy runs [processors; 1 per task of slurm and ssh]",
                    &arguments->jobs,

@@ -91,7 +91,8 @@ struct RunArguments {
   std::vector<std::string> variants, settings, faults, topics, dumps;
   std::string out, format, rig, heartbeat, sequence_id, video, mcap, map_cloud, sysfs_root = "/";
   int max_frames = 0, every = 1, passes = 1, images = 0, gray_noise = 0;
-  bool deterministic_counts = false, no_frame_cache = false, imu_rate = false, mcap_images = false;
+  bool deterministic_counts = false, no_frame_cache = false, imu_rate = false, mcap_images = false,
+       force = false;
   double speed = 1.0, start_s = 0.0, seconds = 0.0, map_voxel_m = 0.02;
   MapOptions map;
 };
@@ -171,6 +172,9 @@ std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const R
     if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
     run.folder = shared_root ? root / folder_name(run.variant) : root;
     require_safe_folder(run.folder, run_layout(), inputs);
+    if (!arguments.out.empty() && !arguments.force && has_earlier_output(run.folder, run_layout()))
+      throw InputError(run.folder.string(),
+                       "contains an earlier run; replace it with --force or choose another folder");
     if (!run.video.empty()) require_safe_folder(run.video, video_layout(), inputs);
     require_writable(run.folder);
   }
@@ -269,8 +273,9 @@ std::string score_line(const RunResult& result) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// @param sequence as the user named it
-void print_result(const RunResult& result, const fs::path& folder, const std::string& sequence) {
+void print_result(const RunResult& result, const fs::path& folder, const RunArguments& arguments) {
+  const std::string& sequence = arguments.sequence;
+  const bool is_part = arguments.start_s > 0.0 || arguments.seconds > 0.0 || arguments.max_frames > 0;
   const std::vector<SkippedFrame>& skipped = result.run.summary.skipped;
   for (std::size_t i = 0; i < std::min(skipped.size(), kMaxLines); ++i)
     spdlog::warn("frame {} skipped: {}", skipped[i].index, skipped[i].reason);
@@ -281,8 +286,9 @@ void print_result(const RunResult& result, const fs::path& folder, const std::st
                            status_name(result.outcome), result.run.summary.frames, result.run.frames_planned,
                            score_line(result), (folder / "result.json").string());
   if (!result.gt.poses.empty())
-    std::cout << fmt::format("  {} true poses; again: stillpoint eval {} {}\n", result.gt.poses.size(),
-                             sequence, folder.string());
+    std::cout << fmt::format("  {} true poses; again: stillpoint eval {} {}{}\n", result.gt.poses.size(),
+                             sequence, folder.string(),
+                             is_part ? " (CR and coverage: of the whole sequence)" : "");
   const std::vector<RigFinding> rig = rig_report(result.run.calibration);
   if (!rig.empty()) std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
   if (const std::vector<std::string> off = run_indicators(result); !off.empty())
@@ -372,7 +378,7 @@ int run(const std::shared_ptr<const RunArguments>& shared) {
     result.start_s = start_s;
     watch.reset();  // removes the progress line
     write_run(configured.folder, result, manifest_of(info, arguments, configured));
-    print_result(result, configured.folder, arguments.sequence);
+    print_result(result, configured.folder, arguments);
     code = std::max({code, exit_code(result.outcome), save_map_and_dumps(arguments, result, dumps)});
   }
   return code;
@@ -391,7 +397,8 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
        &arguments->faults},
       {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
       {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed, {1e-3, 1e3}},
-      {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
+      {"--out", "Output folder [build/runs/SEQ/VARIANT, which is replaced]", &arguments->out},
+      {"--force", "Replace an earlier run in the folder of --out", &arguments->force},
       {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
        &arguments->format},
       {"--topics", kTopicsHelp, &arguments->topics},

@@ -348,6 +348,7 @@ class PlanRunner {
 
   void start(std::size_t run, const fs::path& folder) {
     if (hooks_.on_step) hooks_.on_step("run " + run_label(matrix_.plan, identity_of(run)));
+    fs::remove_all(writer_.work_folder(identity_of(run)));  // of a worker that was killed
     const ProcessSpec spec = spec_of(run, folder);
     load_before_ = machine_load();
     pool_.start(run, spec);

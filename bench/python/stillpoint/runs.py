@@ -62,7 +62,7 @@ def run(sequence, config=None, overrides=None, *, out=None, options=()):
     """
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(out) if out is not None else Path(scratch) / "run"
-        command = [program_path(), "run", str(sequence), "--out", str(folder), *map(str, options)]
+        command = [program_path(), "run", str(sequence), "--out", str(folder), "--force", *map(str, options)]
         command += ["--config", str(config)] if config is not None else []
         command += overriding(overrides)
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
