@@ -28,6 +28,7 @@ void visit_fields(Visitor&& field, Config& config) {
 struct DeviceFile {
   std::string title;
   std::string source;  ///< of the numbers
+  std::string config;  ///< whose costs `cost_ms` are: a config, or the beginning of its name; empty: of any
   int cores = 2;
   bool detector_has_own_processor = false;
   StageNumbers cost_ms = {-1.0, -1.0, -1.0};  ///< fixed cost [ms]; negative = use `factor`
@@ -38,6 +39,7 @@ requires std::is_same_v<std::remove_const_t<Config>, DeviceFile>
 void visit_fields(Visitor&& field, Config& config) {
   field("title", config.title);
   field("source", config.source);
+  field("config", config.config);
   field("cores", config.cores, 1, 1024);
   field("detector_has_own_processor", config.detector_has_own_processor);
   field("cost_ms", config.cost_ms);

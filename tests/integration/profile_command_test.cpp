@@ -215,6 +215,16 @@ TEST(ProfileCommand, RemovesWhatOnlyAnEarlierProfileWrote) {
                                             "trajectory.tum"}));
 }
 
+TEST(ProfileCommand, NamesTheDevicesAndTheSystemOfTheirCosts) {
+  const TemporaryFolder folder;
+  EXPECT_NE(run_program({"profile", "--help"}).out.find("atlas_200, atlas_200_scaled, jetson"),
+            std::string::npos);
+  const std::string warning = "stage costs are those of \"dynamic_vins\", not of \"stillpoint\"";
+  EXPECT_NE(profile(folder, {"--device", "atlas_200"}).err.find(warning), std::string::npos);
+  EXPECT_EQ(profile(folder, {"--device", "atlas_200", "--config", "dynamic_vins"}).err, "");
+  EXPECT_EQ(profile(folder, {"--device", "x86_2core"}).err, "");
+}
+
 TEST(ProfileCommand, RejectsAnUnknownDevice) {
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder, {"--device", "atlas_300"});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,7 @@
 #include "bench/cli/console.h"
 #include "bench/cli/run/profile_report.h"
 #include "bench/config/config_file.h"
+#include "bench/config/toml_source.h"
 #include "bench/plan/bench_plan.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/process/child_process.h"
@@ -48,6 +50,7 @@ using Json = nlohmann::ordered_json;
 /// A run on a simulated device.
 struct DeviceRequest {
   std::string device;  ///< embedded name or TOML file
+  std::string config;  ///< of `spec`
   RunSpec spec;        ///< `device` is not set
   double budget_ms = 0.0;
   fs::path folder;  ///< output: device.json and trajectory.tum
@@ -122,6 +125,12 @@ int profile_on_device(const datasets::SensorStream& stream, DeviceRequest reques
   SimulatedRun run{.device = load_device(request.device), .budget_ms = request.budget_ms};
   request.spec.device = device_model(run.device);
   run.deterministic = request.spec.device->is_deterministic();
+  if (!request.config.starts_with(run.device.config))
+    spdlog::warn(
+        "--device {}: its stage costs are those of \"{}\", not of \"{}\": dropped frames and latencies are "
+        "those "
+        "of a system as slow; add --config {}, or use a device with costs scaled from this machine",
+        request.device, run.device.config, request.config, run.device.config);
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
   const auto on_frame = [&](const FrameReport& report) {
     progress.update(static_cast<std::size_t>(report.update.frame_id) + 1);
@@ -156,12 +165,19 @@ constexpr std::size_t kListedCharacters = 100;
 ProcessSpec run_of(const InstructionRequest& request) {
   ProcessSpec run;
   run.program = executable_path();
-  run.arguments = {"run",           fs::absolute(request.sequence).string(),
-                   "--config",      request.config.base,
-                   "--variant",     request.config.variant,
-                   "--out",         ".",
-                   "--max-frames",  std::to_string(request.frames),
-                   "--sequence-id", "unused"};
+  run.arguments = {"run",
+                   fs::absolute(request.sequence).string(),
+                   "--config",
+                   request.config.base,
+                   "--variant",
+                   request.config.variant,
+                   "--out",
+                   ".",
+                   "--force",
+                   "--max-frames",
+                   std::to_string(request.frames),
+                   "--sequence-id",
+                   "unused"};
   for (const std::string& setting : request.config.settings) {
     run.arguments.insert(run.arguments.end(), {"--set", setting});
   }
@@ -402,6 +418,7 @@ DeviceRequest device_request(const ProfileArguments& arguments, const fs::path& 
     throw InputError("--device", "uses a virtual clock; remove --mode and --instructions");
   }
   return {.device = arguments.device,
+          .config = arguments.base,
           .spec = spec_of(arguments),
           .budget_ms = arguments.budget_ms,
           .folder = folder};
@@ -454,39 +471,40 @@ int run_profile(const ProfileArguments& arguments) {
 }
 
 std::vector<Option> profile_options(const std::shared_ptr<ProfileArguments>& arguments) {
-  return {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
-          {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
-          {"--variant", "Overlays joined by +", &arguments->variant},
-          {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
-          {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
-          {"--frame-budget-ms",
-           "Frames that take longer are counted as deadline misses [ms]",
-           &arguments->budget_ms,
-           {1e-3, 1e6}},
-          {"--cores", "CPU affinity, e.g. 0,1 [all]", &arguments->cores},
-          {"--out", "Output folder of profile.json, trace.json and stacks.folded [build/profile/SEQ]",
-           &arguments->out},
-          {"--format", "Sequence format [detected]", &arguments->format},
-          {"--rig", kRigHelp, &arguments->rig},
-          {"--max-frames",
-           "Maximum number of frames; 0 = all, or 30 with --instructions",
-           &arguments->max_frames,
-           {0, 1e9}},
-          {"--device",
-           "Simulate this target device on a virtual clock: dropped frames, latency, accuracy (name "
-           "or file)",
-           &arguments->device},
-          {"--speed",
-           "Playback speed in realtime mode and with --device; 1 = as recorded",
-           &arguments->speed,
-           {1e-3, 1e3}},
-          {"--tegrastats", "Log file of a running tegrastats, for the energy of Jetson devices",
-           &arguments->tegrastats},
-          {"--duration", "Repeat the run for this time, e.g. 10m, and show the drift of time and temperature",
-           &arguments->duration},
-          {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
-          {"--instructions", "Count instructions with callgrind instead of measuring times",
-           &arguments->instructions}};
+  return {
+      {"SEQ", "Sequence folder or preset name", &arguments->sequence},
+      {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+      {"--variant", "Overlays joined by +", &arguments->variant},
+      {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+      {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
+      {"--frame-budget-ms",
+       "Frames that take longer are counted as deadline misses [ms]",
+       &arguments->budget_ms,
+       {1e-3, 1e6}},
+      {"--cores", "CPU affinity, e.g. 0,1 [all]", &arguments->cores},
+      {"--out", "Output folder of profile.json, trace.json and stacks.folded [build/profile/SEQ]",
+       &arguments->out},
+      {"--format", "Sequence format [detected]", &arguments->format},
+      {"--rig", kRigHelp, &arguments->rig},
+      {"--max-frames",
+       "Maximum number of frames; 0 = all, or 30 with --instructions",
+       &arguments->max_frames,
+       {0, 1e9}},
+      {"--device",
+       "Simulate this target device on a virtual clock: dropped frames, latency, accuracy; a TOML file or " +
+           fmt::format("{}", fmt::join(embedded_names(TomlKind::kDevice), ", ")),
+       &arguments->device},
+      {"--speed",
+       "Playback speed in realtime mode and with --device; 1 = as recorded",
+       &arguments->speed,
+       {1e-3, 1e3}},
+      {"--tegrastats", "Log file of a running tegrastats, for the energy of Jetson devices",
+       &arguments->tegrastats},
+      {"--duration", "Repeat the run for this time, e.g. 10m, and show the drift of time and temperature",
+       &arguments->duration},
+      {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
+      {"--instructions", "Count instructions with callgrind instead of measuring times",
+       &arguments->instructions}};
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ void print_times(const std::vector<ProfileRow>& rows, const DeadlineMisses& miss
   };
   for (const ProfileRow& row : rows) {
     const std::string_view name = module_name(row.module);
-    if (!is_thread(row.module)) add(name, "call", row.per_call, row.frames_over);
+    if (!is_thread(row.module) && row.per_call.mean != row.per_frame.mean)
+      add(name, "call", row.per_call, row.frames_over);
     add(name, "frame", row.per_frame, row.frames_over);
   }
   if (misses.whole_frame) add("all_stages", "frame", *misses.whole_frame, misses.one_thread);
@@ -69,15 +70,17 @@ void print_waits(const std::vector<ChannelWaits>& waits) {
   }
 }
 
-void print_process(const ProcessUsage& usage, const std::map<int, ThreadUsage>& threads) {
+void print_process(const Profile& profile) {
+  const ProcessUsage& usage = profile.usage;
   std::cout << fmt::format(
       "CPU time {:.2f} s user + {:.2f} s system, {} voluntary and {} involuntary context switches, "
       "{} minor and {} major page faults, peak memory {:.0f} MB\n",
       usage.user_s, usage.system_s, usage.voluntary_switches, usage.involuntary_switches, usage.minor_faults,
       usage.major_faults, 1e-6 * static_cast<double>(usage.peak_memory_bytes));
-  for (const auto& [id, thread] : threads) {
-    std::cout << fmt::format("  thread {} {}: {:.2f} s user + {:.2f} s system\n", id, thread.name,
-                             thread.user_s, thread.system_s);
+  for (const auto& [id, thread] : profile.threads) {
+    std::cout << fmt::format("  thread {} {}: {:.2f} s user + {:.2f} s system, {:.0f} % of a core\n", id,
+                             thread.name, thread.user_s, thread.system_s,
+                             100.0 * (thread.user_s + thread.system_s) / profile.run.wall_s);
   }
 }
 
@@ -210,7 +213,7 @@ void print_profile(const Profile& profile) {
         report->dropped, report->late_detections, report->deadline_misses(), report->deadline_ms);
   }
   print_waits(profile.run.summary.waits);
-  print_process(profile.usage, profile.threads);
+  print_process(profile);
   print_machine(profile);
 }
 
