@@ -77,5 +77,20 @@ function(stillpoint_install_package)
   install(FILES ${generated}/stillpointConfig.cmake ${generated}/stillpointConfigVersion.cmake
           DESTINATION ${stillpoint_package_folder} COMPONENT library)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/stillpoint COMPONENT library)
+  install(FILES ${PROJECT_SOURCE_DIR}/core/examples/installed/CMakeLists.txt
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/stillpoint/examples COMPONENT library)
   install(TARGETS stillpoint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/scripts/package/completion.bash RENAME stillpoint
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+  if(STILLPOINT_PACKAGES) # which have a license file of their own, and a man page that scripts/package.sh makes
+    return()
+  endif()
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/stillpoint COMPONENT program)
+  if(NOT CMAKE_CROSSCOMPILING)
+    set(page ${PROJECT_BINARY_DIR}/man/stillpoint.1.gz)
+    install(CODE "
+      execute_process(COMMAND \"${PROJECT_SOURCE_DIR}/scripts/package/man_page.sh\" \"$<TARGET_FILE:stillpoint>\" \"${page}\"
+                      COMMAND_ERROR_IS_FATAL ANY)
+      file(INSTALL \"${page}\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\")" COMPONENT program)
+  endif()
 endfunction()

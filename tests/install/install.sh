@@ -11,6 +11,10 @@ rm -rf "$prefix"
 # After demo.sh only the program is built; its component needs no other target.
 "$cmake" --install "$build" --prefix "$prefix.program" --component program >>"$build/install.log"
 "$prefix.program/bin/stillpoint" --help >/dev/null
+for file in share/man/man1/stillpoint.1.gz share/bash-completion/completions/stillpoint share/stillpoint/LICENSE; do
+  [[ -s "$prefix.program/$file" ]] || { echo "$file is not installed with the program"; exit 1; }
+done
+zgrep -q 'stillpoint trajectory convert' "$prefix.program/share/man/man1/stillpoint.1.gz"
 rm -rf "$prefix.program"
 
 # An include that was not rewritten would be found in the sources of this machine, but not on another.
