@@ -67,7 +67,7 @@ done <<'COMMANDS'
 0|stillpoint run mine --out mine
 0|stillpoint run seq --mcap run.mcap --map-cloud map.ply --out mapped
 0|stillpoint data cloud seq --out truth.ply
-0|stillpoint eval cloud map.ply truth.ply
+0|stillpoint eval cloud map.ply truth.ply --trajectory mapped/trajectory.tum --truth-trajectory seq/groundtruth.txt
 0|stillpoint data cache list
 0|printf '[recorded]\nsequences = ["./seq"]\nvariants = ["stillpoint", "dynamic_vins"]\n' >plan.toml
 0|stillpoint bench plan.toml --store runs.sqlite

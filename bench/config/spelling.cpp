@@ -2,6 +2,7 @@
 #include "bench/config/spelling.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace stillpoint::bench {
@@ -9,6 +10,7 @@ namespace {
 
 constexpr double kWrongLetter = 1.0;
 constexpr double kOmittedLetter = 0.1;
+constexpr double kSwappedLetters = 0.2;
 
 /// Whether the text is the path of a file or folder, for which a name would be no remedy.
 bool is_file_path(std::string_view typed) {
@@ -26,17 +28,19 @@ bool resembles(std::string_view typed, std::string_view name) {
 }  // namespace
 
 double spelling_distance(std::string_view typed, std::string_view name) {
-  // Row i of the Levenshtein matrix: cost of transforming the first i typed letters into each prefix of the
-  // name.
+  // Row i of the matrix of Damerau and Levenshtein: cost of transforming the first i typed letters into each
+  // prefix of the name.
   std::vector<double> row(name.size() + 1);
   for (std::size_t j = 0; j <= name.size(); ++j) row[j] = kOmittedLetter * static_cast<double>(j);
+  std::vector<double> last, before_last;
   for (std::size_t i = 1; i <= typed.size(); ++i) {
-    double diagonal = row[0];
+    before_last = std::exchange(last, row);
     row[0] += kWrongLetter;
     for (std::size_t j = 1; j <= name.size(); ++j) {
-      const double replaced = diagonal + (typed[i - 1] == name[j - 1] ? 0.0 : kWrongLetter);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + kWrongLetter, row[j - 1] + kOmittedLetter});
+      const double replaced = last[j - 1] + (typed[i - 1] == name[j - 1] ? 0.0 : kWrongLetter);
+      row[j] = std::min({replaced, last[j] + kWrongLetter, row[j - 1] + kOmittedLetter});
+      if (i > 1 && j > 1 && typed[i - 1] == name[j - 2] && typed[i - 2] == name[j - 1])
+        row[j] = std::min(row[j], before_last[j - 2] + kSwappedLetters);
     }
   }
   return row[name.size()];

@@ -8,8 +8,9 @@
 
 namespace stillpoint::bench {
 
-/// Asymmetric edit distance from a typed text to a name: a wrong or additional letter costs 1, an omitted one
-/// 0.1, so that abbreviations (`mcc`) and keys without their section (`usage`) match the full name.
+/// Asymmetric edit distance from a typed text to a name: a wrong or additional letter costs 1, two swapped
+/// neighbors 0.2, an omitted letter 0.1, so that abbreviations (`mcc`) and keys without their section
+/// (`usage`) match the full name.
 [[nodiscard]] double spelling_distance(std::string_view typed, std::string_view name);
 
 /// `; did you mean "..."?` with the nearest of `names`; empty if none of them resembles the typed text, i.e.

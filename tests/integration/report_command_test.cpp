@@ -151,6 +151,16 @@ TEST(ReportCommand, DoesNotReplaceAForeignPage) {
   }
 }
 
+TEST(ReportCommand, TakesTheStoreAsAnOptionToo) {
+  const std::vector<std::vector<std::string>> commands = {
+      {"report", "--out", "page"}, {"dashboard", "--out", "page"}, {"regressions"}, {"serve"}};
+  for (std::vector<std::string> arguments : commands) {
+    arguments.insert(arguments.end(), {"--store", "missing.sqlite"});
+    EXPECT_NE(run_program(arguments).err.find("missing.sqlite: there is no such store"), std::string::npos)
+        << arguments.front();
+  }
+}
+
 TEST(ReportCommand, RejectsAMissingStore) {
   const TemporaryFolder folder;
   const ProgramResult result =

@@ -17,6 +17,9 @@
 namespace stillpoint::bench {
 namespace {
 
+/// F-score below which two clouds are probably of different worlds.
+constexpr double kLeastAgreement = 0.1;
+
 struct EvalCloudArguments {
   std::string estimate, truth;
   std::string trajectory, true_trajectory;
@@ -67,6 +70,10 @@ int evaluate_cloud(const EvalCloudArguments& arguments) {
       "completeness  {:.2f} %\nF-score       {:.4f}\npoints        {} of the estimate, {} of the truth\n",
       score.accuracy_m, score.accuracy_median_m, 100.0 * score.precision, arguments.threshold_m,
       100.0 * score.completeness, score.f_score, score.estimate_points, score.truth_points);
+  if (arguments.trajectory.empty() && score.f_score < kLeastAgreement)
+    spdlog::warn(
+        "the clouds hardly agree: if they are of different worlds, as a map and a ground truth are, add "
+        "--trajectory and --truth-trajectory");
   return kExitOk;
 }
 

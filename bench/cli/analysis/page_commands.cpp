@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReportArguments {
-  std::string store;
+  std::string store = "build/bench/store.sqlite";
   std::string out;
   std::string plan;
 };
@@ -69,7 +69,7 @@ Command report_command() {
               "Write a self-contained HTML report of a store: tables, ablations, trajectories, time series, "
               "run times",
           .example = "report build/bench/store.sqlite --out build/report",
-          .options = {{"STORE", "Store created by `stillpoint bench`", &arguments->store},
+          .options = {store_option(&arguments->store),
                       {"--out", "Output folder of index.html and tables/", &arguments->out},
                       {"--plan", "Only the runs of this plan [all plans]", &arguments->plan}},
           .action = [arguments] { return write_report(*arguments); }};
@@ -163,7 +163,7 @@ Command with_commit_options(Command command, CommitArguments& arguments) {
 }
 
 struct DashboardArguments {
-  std::string store;
+  std::string store = "build/bench/store.sqlite";
   std::string out;
   std::string format = "markdown";
   std::string system;
@@ -225,7 +225,7 @@ Command dashboard_command() {
       .name = "dashboard",
       .summary = "Write a static HTML dashboard of all metrics over commits, with detected changes",
       .example = "dashboard build/bench/store.sqlite --out build/dashboard",
-      .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
+      .options = {store_option(&arguments->store),
                   {"--out", "Output folder of index.html, commits/ and the list of regressions",
                    &arguments->out},
                   {"--system", kSystemHelp, &arguments->system}},
@@ -239,7 +239,7 @@ Command regressions_command() {
       .name = "regressions",
       .summary = "List open regressions and drifts; exit code 0 = none, 1 = some, 2 = error",
       .example = "regressions build/bench/store.sqlite --format json",
-      .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
+      .options = {store_option(&arguments->store),
                   {"--format", "Output format: markdown or json [markdown]", &arguments->format},
                   {"--system", kSystemHelp, &arguments->system}},
       .action = [arguments] { return regressions(*arguments); }};
@@ -249,7 +249,7 @@ Command regressions_command() {
 namespace {
 
 struct ServeArguments {
-  std::string store;
+  std::string store = "build/bench/store.sqlite";
   std::string system;
   bool watch = false;
   CommitArguments commits;
@@ -360,7 +360,7 @@ Command serve_command() {
       .summary = "Serve dashboard and report of a store over HTTP, with --watch while a bench writes it",
       .example = "serve build/bench/store.sqlite --watch --port 8035",
       .options =
-          {{"STORE", "Store with the runs of several commits", &arguments->store},
+          {store_option(&arguments->store),
            {"--system", kSystemHelp, &arguments->system},
            {"--watch",
             "First page: runs as they end, with progress, rate and remaining time; dashboard/ and report/ "

@@ -219,12 +219,14 @@ int show(const StoreArguments& arguments) {
     std::cout << report::data_json(report::tidy_table(std::span(&run, 1)));
     return kExitOk;
   }
-  std::cout << fmt::format("{} {} {}: {} {}\n{} to {}\n", run.key, run.identity.sequence,
-                           run.identity.variant, outcome_name(run.outcome), run.detail, run.started,
-                           run.ended);
+  const auto after = [](std::string_view separator, const std::string& text, std::string_view end = "") {
+    return text.empty() ? "" : fmt::format("{}{}{}", separator, text, end);
+  };
+  std::cout << fmt::format("{} {} {}: {}{}\n{} to {}\n", run.key, run.identity.sequence, run.identity.variant,
+                           outcome_name(run.outcome), after(" ", run.detail), run.started, run.ended);
   for (const Metric& metric : run.metrics) {
-    std::cout << fmt::format("{:<28} {:.6g} {}  ({})\n", metric.name, metric.value, metric.unit,
-                             metric.protocol);
+    std::cout << fmt::format("{:<28} {:.6g}{}{}\n", metric.name, metric.value, after(" ", metric.unit),
+                             after("  (", metric.protocol, ")"));
   }
   for (const ModuleCost& cost : run.costs) {
     std::cout << fmt::format("{:<28} {:.3f} ms per {}, median {:.3f}, p95 {:.3f}, max {:.3f}, {} calls\n",

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/plan/execution/sequence_renderer.h"
 
+#include <algorithm>
 #include <chrono>
+#include <span>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
@@ -41,6 +45,17 @@ SequenceRenderer::Rendered SequenceRenderer::take() {
 SequenceFolders::SequenceFolders(const PlanMatrix& matrix, const PlanHooks& hooks)
     : matrix_(matrix), hooks_(hooks), renderer_(hooks.stop_requested) {}
 
+void SequenceFolders::announce(std::size_t sequence) const {
+  if (!hooks_.on_step) return;
+  const auto rendered_in = [](std::span<const PlanSequence> sequences) {
+    return std::ranges::count_if(sequences,
+                                 [](const PlanSequence& planned) { return planned.rendering.has_value(); });
+  };
+  const std::span<const PlanSequence> all = matrix_.sequences;
+  hooks_.on_step(fmt::format("render {} (sequence {} of {})", all[sequence].name,
+                             rendered_in(all.first(sequence + 1)), rendered_in(all)));
+}
+
 bool SequenceFolders::is_ready(std::size_t sequence) const {
   return !matrix_.sequences[sequence].rendering || folders_.contains(sequence) ||
          unrendered_.contains(sequence);
@@ -49,7 +64,7 @@ bool SequenceFolders::is_ready(std::size_t sequence) const {
 std::filesystem::path SequenceFolders::find(std::size_t sequence) {
   if (const auto found = folders_.find(sequence); found != folders_.end()) return found->second;
   const PlanSequence& planned = matrix_.sequences[sequence];
-  if (planned.rendering && hooks_.on_step) hooks_.on_step("render " + planned.name);
+  if (planned.rendering) announce(sequence);
   const Stopwatch time;
   std::filesystem::path folder =
       sequence_folder(planned, {.progress = hooks_.on_rendered, .stop_requested = hooks_.stop_requested});
@@ -60,7 +75,7 @@ std::filesystem::path SequenceFolders::find(std::size_t sequence) {
 
 void SequenceFolders::render_ahead(std::size_t sequence) {
   if (renderer_.is_busy()) return;
-  if (hooks_.on_step) hooks_.on_step("render " + matrix_.sequences[sequence].name);
+  announce(sequence);
   renderer_.start(sequence, matrix_.sequences[sequence]);
 }
 

@@ -80,6 +80,9 @@ class SequenceFolders {
   [[nodiscard]] double rendering_s() const { return rendering_s_; }
 
  private:
+  /// Calls `PlanHooks::on_step` before a rendering.
+  void announce(std::size_t sequence) const;
+
   const PlanMatrix& matrix_;
   const PlanHooks& hooks_;
   SequenceRenderer renderer_;

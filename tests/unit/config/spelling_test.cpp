@@ -10,9 +10,15 @@ namespace {
 
 TEST(Spelling, WrongAndAdditionalLettersCostMoreThanOmittedOnes) {
   EXPECT_DOUBLE_EQ(spelling_distance("rows", "rows"), 0.0);
-  EXPECT_DOUBLE_EQ(spelling_distance("rowz", "rows"), 1.0);   // one replaced
-  EXPECT_DOUBLE_EQ(spelling_distance("rowss", "rows"), 1.0);  // one additional
-  EXPECT_NEAR(spelling_distance("rw", "rows"), 0.2, 1e-12);   // two omitted
+  EXPECT_DOUBLE_EQ(spelling_distance("rowz", "rows"), 1.0);    // one replaced
+  EXPECT_DOUBLE_EQ(spelling_distance("rowss", "rows"), 1.0);   // one additional
+  EXPECT_NEAR(spelling_distance("rw", "rows"), 0.2, 1e-12);    // two omitted
+  EXPECT_NEAR(spelling_distance("rosw", "rows"), 0.2, 1e-12);  // two neighbors swapped
+}
+
+TEST(Spelling, PrefersSwappedLettersToALongerName) {
+  const std::vector<std::string> names = {"walking_xyz_empty", "walking_xyz"};
+  EXPECT_EQ(suggestion("walking_xzy", names), "; did you mean \"walking_xyz\"?");
 }
 
 TEST(Spelling, FindsTheFullNameOfAnAbbreviation) {
