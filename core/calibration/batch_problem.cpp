@@ -24,7 +24,9 @@ constexpr double kSpeedSigma = 5.0;         // [m/s]
 constexpr double kGyroBiasSigma = 0.05;     // [rad/s]
 constexpr double kAccelBiasSigma = 0.3;     // [m/s^2]
 constexpr double kLeastInformation = 1e-6;  // of each number: of points that almost nothing determines
-constexpr double kRateHalfWidth_s = 0.01;   // of the mean rate at an exposure
+constexpr double kLeastTruth_m = 5e-4;      // deviations of a ground truth, with the next
+constexpr double kLeastTruth_rad = 5e-4;
+constexpr double kRateHalfWidth_s = 0.01;  // of the mean rate at an exposure
 
 int index(SharedValue value) { return static_cast<int>(value); }
 
@@ -51,6 +53,30 @@ BatchProblem::BatchProblem(const CalibrationInput& input, const CalibrationPrior
     if (landmark.is_usable()) add_landmark(landmark);
   }
   add_priors();
+  if (!state_.T_w_g.empty()) add_truth();
+}
+
+void BatchProblem::add_truth() {
+  SharedValues& shared = state_.shared;
+  const CalibrationTruth& truth = input_.truth;
+  add_pose_block(shared.T_f_b.data(), SharedValue::kTruthPose);
+  problem_.AddParameterBlock(&shared.truth_delay_s, 1);
+  if (!is_variable(SharedValue::kTruthDelay)) problem_.SetParameterBlockConstant(&shared.truth_delay_s);
+  pose_priors_.emplace_back(truth.T_f_b, priors_.truth_position_m, priors_.truth_rotation_rad);
+  problem_.AddResidualBlock(&pose_priors_.back(), nullptr, shared.T_f_b.data());
+  add_linear_prior(&shared.truth_delay_s, Eigen::VectorXd::Constant(1, truth.delay_s),
+                   Eigen::MatrixXd::Constant(1, 1, 1.0 / priors_.truth_delay_s));
+  for (int i = 0; i < static_cast<int>(state_.keyframes.size()); ++i) {
+    BatchKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(i)];
+    if (!truth_at(truth.trajectory, after(keyframe.t, shared.truth_delay_s))) continue;
+    double* const world = state_.T_w_g[static_cast<std::size_t>(keyframe.section)].data();
+    if (!problem_.HasParameterBlock(world)) problem_.AddParameterBlock(world, 7, &pose_manifold_);
+    truth_keyframes_.push_back(i);
+    truth_factors_.emplace_back(truth.trajectory, keyframe.t,
+                                TruthFactor::Sigmas{state_.truth_sigma_m, state_.truth_sigma_rad});
+    problem_.AddResidualBlock(&truth_factors_.back(), &huber_, keyframe.pose.data(), world,
+                              shared.T_f_b.data(), &shared.truth_delay_s);
+  }
 }
 
 void BatchProblem::add_keyframes() {
@@ -382,7 +408,27 @@ RoundStatistics BatchProblem::update_deviations() {
         observation.pixel_is_inlier && observation.depth_is_inlier && seen_[i].depth != nullptr;
   }
   if (!inertial_.empty()) update_imu_noise();
+  statistics.truth_poses = truth_factors_.size();
+  if (!truth_factors_.empty()) update_truth_noise();
   return statistics;
+}
+
+void BatchProblem::update_truth_noise() {
+  std::vector<double> positions, rotations;
+  for (std::size_t k = 0; k < truth_factors_.size(); ++k) {
+    const BatchKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(truth_keyframes_[k])];
+    const std::array<const double*, 4> blocks = {
+        keyframe.pose.data(), state_.T_w_g[static_cast<std::size_t>(keyframe.section)].data(),
+        state_.shared.T_f_b.data(), &state_.shared.truth_delay_s};
+    std::array<double, 6> r{};
+    static_cast<void>(truth_factors_[k].Evaluate(blocks.data(), r.data(), nullptr));
+    for (std::size_t i = 0; i < 3; ++i) {
+      positions.push_back(std::abs(r[i]) * state_.truth_sigma_m);
+      rotations.push_back(std::abs(r[i + 3]) * state_.truth_sigma_rad);
+    }
+  }
+  state_.truth_sigma_m = std::max(kLeastTruth_m, trimmed_deviation(std::move(positions)));
+  state_.truth_sigma_rad = std::max(kLeastTruth_rad, trimmed_deviation(std::move(rotations)));
 }
 
 /// By the residuals of rotation, and of position and velocity: each interval has three of either more than it
@@ -462,7 +508,7 @@ std::optional<Eigen::VectorXd> variances(const Linearization& at, const std::vec
 
 std::optional<SharedVector> BatchProblem::deviations() {
   SharedValues& shared = state_.shared;
-  const std::array<std::pair<double*, SharedValue>, 8> shared_blocks = {
+  const std::array<std::pair<double*, SharedValue>, 10> shared_blocks = {
       {{shared.camera.data(), SharedValue::kFx},
        {&shared.readout_s, SharedValue::kReadout},
        {shared.depth.data(), SharedValue::kDepthScale},
@@ -470,7 +516,9 @@ std::optional<SharedVector> BatchProblem::deviations() {
        {shared.T_c_d.data(), SharedValue::kDepthPose},
        {shared.T_b_c.data(), SharedValue::kExtrinsics},
        {&shared.time_offset_s, SharedValue::kTimeOffset},
-       {&shared.depth_delay_s, SharedValue::kDepthDelay}}};
+       {&shared.depth_delay_s, SharedValue::kDepthDelay},
+       {shared.T_f_b.data(), SharedValue::kTruthPose},
+       {&shared.truth_delay_s, SharedValue::kTruthDelay}}};
   ceres::Problem::EvaluateOptions options;
   options.residual_blocks = landmark_blocks_;
   std::vector<ceres::ResidualBlockId> all;

@@ -40,6 +40,8 @@ enum class SharedValue : std::uint8_t {
   kExtrinsics = kDepthPose + 6,  ///< T_b_c: likewise
   kTimeOffset = kExtrinsics + 6,
   kDepthDelay,
+  kTruthPose,  ///< T_f_b: likewise
+  kTruthDelay = kTruthPose + 6,
   kCount
 };
 inline constexpr int kSharedCount = static_cast<int>(SharedValue::kCount);
@@ -60,7 +62,7 @@ struct RoundStatistics {
   double pixel_rms_px = 0.0;       ///< of inliers, corrected for the number of estimated values
   double inverse_depth_rms = 0.0;  ///< likewise [1/m]; zero without depth
   double cost = 0.0;
-  std::size_t landmarks = 0, observations = 0, depths = 0, inertial_factors = 0;
+  std::size_t landmarks = 0, observations = 0, depths = 0, inertial_factors = 0, truth_poses = 0;
   std::vector<ImageResidual> residuals;  ///< of inliers
 };
 
@@ -98,6 +100,7 @@ class BatchProblem {
   void add_landmark(BatchLandmark& landmark);
   void add_inertial(ImuBuffer& samples, int first);
   void add_state_prior(int keyframe);
+  void add_truth();
   void add_priors();
   void hold(double* block, int size, std::span<const int> constant);
   void add_pose_block(double* block, SharedValue first);
@@ -110,6 +113,7 @@ class BatchProblem {
   [[nodiscard]] std::array<const double*, 8> depth_blocks(const Seen& seen) const;
   [[nodiscard]] Eigen::Vector3d velocity_c(const BatchObservation& seen, const Eigen::Vector3d& p_w) const;
   void update_imu_noise();
+  void update_truth_noise();
 
   const CalibrationInput& input_;
   const CalibrationPriors& priors_;
@@ -126,6 +130,8 @@ class BatchProblem {
   std::deque<ImuFactor> imu_factors_;
   std::deque<LinearPriorFactor> linear_priors_;
   std::deque<PosePrior> pose_priors_;
+  std::deque<TruthFactor> truth_factors_;
+  std::vector<int> truth_keyframes_;
   std::vector<Seen> seen_;
   std::size_t landmark_count_ = 0;
   /// Residual blocks of all landmarks, and the number of residuals up to the last one of each landmark.

@@ -34,7 +34,8 @@ SharedValues shared_values(const RigCalibration& calibration) {
                       .T_b_c = values_of(calibration.rig.T_b_c),
                       .T_c_d = values_of(calibration.T_c_d),
                       .time_offset_s = calibration.rig.time_offset_s,
-                      .depth_delay_s = calibration.depth_delay_s};
+                      .depth_delay_s = calibration.depth_delay_s,
+                      .T_f_b = values_of(Pose{})};
   std::ranges::copy(camera.distortion, shared.camera.begin() + 4);
   return shared;
 }
@@ -129,6 +130,22 @@ CalibrationFeature checked(CalibrationFeature feature) {
   return feature;
 }
 
+/// Each world of the ground truth by the first keyframe of the section at which it is known.
+void align_truth(const CalibrationTruth& truth, BatchState& state) {
+  if (truth.trajectory.poses.empty()) return;
+  state.shared.T_f_b = values_of(truth.T_f_b);
+  state.shared.truth_delay_s = truth.delay_s;
+  state.T_w_g.assign(state.gravity_w.size(), values_of(Pose{}));
+  int aligned = -1;
+  for (const BatchKeyframe& keyframe : state.keyframes) {
+    const std::optional<Pose> T_g_f = truth_at(truth.trajectory, after(keyframe.t, truth.delay_s));
+    if (keyframe.section == aligned || !T_g_f) continue;
+    aligned = keyframe.section;
+    state.T_w_g[static_cast<std::size_t>(aligned)] =
+        values_of(pose_of(keyframe.pose) * (*T_g_f * truth.T_f_b).inverse());
+  }
+}
+
 }  // namespace
 
 BatchState initial_state(const CalibrationInput& input, double begin, double end) {
@@ -154,6 +171,7 @@ BatchState initial_state(const CalibrationInput& input, double begin, double end
     }
     state.gravity_w.emplace_back(input.gravity * section.gravity_w);
   }
+  align_truth(input.truth, state);
   const LandmarkPositions positions(state, input.stated);
   for (auto& [track, landmark] : landmarks) {
     if (!landmark.is_usable()) continue;

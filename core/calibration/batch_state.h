@@ -24,6 +24,8 @@ struct SharedValues {
   PoseValues T_b_c{}, T_c_d{};
   double time_offset_s = 0.0;
   double depth_delay_s = 0.0;
+  PoseValues T_f_b{};  ///< with the next: of the ground truth, see TruthFactor
+  double truth_delay_s = 0.0;
 };
 
 [[nodiscard]] SharedValues shared_values(const RigCalibration& calibration);
@@ -63,6 +65,8 @@ struct BatchState {
   double pixel_sigma_px = 1.0;
   double inverse_depth_sigma = 0.01;
   ImuNoiseFactors imu_noise;
+  std::vector<PoseValues> T_w_g;  ///< world of the ground truth, per section; empty without one
+  double truth_sigma_m = 0.005, truth_sigma_rad = 0.01;
 };
 
 /// The keyframes from the fraction `begin` to the fraction `end` of all, with the landmarks that at least

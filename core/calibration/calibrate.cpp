@@ -63,6 +63,13 @@ constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"T_b_c rotation z", "deg", kDegrees, 3e-4},
     {"time_offset_s", "ms", 1e3, 2e-4},
     {"depth delay", "ms", 1e3, 1e-3},
+    {"truth T_f_b x", "mm", 1e3, 1e-3},
+    {"truth T_f_b y", "mm", 1e3, 1e-3},
+    {"truth T_f_b z", "mm", 1e3, 1e-3},
+    {"truth T_f_b rotation x", "deg", kDegrees, 3e-4},
+    {"truth T_f_b rotation y", "deg", kDegrees, 3e-4},
+    {"truth T_f_b rotation z", "deg", kDegrees, 3e-4},
+    {"truth delay", "ms", 1e3, 2e-4},
 }};
 
 /// A bias in pixels is a larger angle, and a larger fraction of the focal length, in a smaller image.
@@ -78,7 +85,8 @@ double systematic_sigma(SharedValue value, const RigCalibration& stated) {
     const int component = static_cast<int>(value) - static_cast<int>(pose);
     return component >= 3 && component < 6;
   };
-  const bool is_angle = value == kK1 || value == kK2 || is_rotation(kDepthPose) || is_rotation(kExtrinsics);
+  const bool is_angle = value == kK1 || value == kK2 || is_rotation(kDepthPose) || is_rotation(kExtrinsics) ||
+                        is_rotation(kTruthPose);
   return is_angle ? color * sigma : sigma;
 }
 
@@ -88,19 +96,20 @@ void set(SharedFlags& flags, SharedValue first, int count, bool value) {
 
 /// The values that the data can determine at all.
 SharedFlags variable_values(const CalibrationSwitches& estimate, const CalibrationInput& input) {
-  const bool inertial = !input.imu.empty();
+  const bool inertial = !input.imu.empty(), has_truth = !input.truth.trajectory.poses.empty();
   SharedFlags flags{};
   set(flags, kFx, 2, estimate.focal);
   set(flags, kCx, 2, estimate.center);
   set(flags, kK1, 2, estimate.distortion);
   set(flags, kReadout, 1, estimate.rolling_shutter);
-  set(flags, kDepthScale, 1, estimate.depth_scale && inertial);
+  set(flags, kDepthScale, 1, estimate.depth_scale && (inertial || has_truth));
   set(flags, kDepthOffset, 1, estimate.depth_offset);
   set(flags, kDepthFx, 4, estimate.depth_intrinsics && !input.depth_is_registered);
   set(flags, kDepthPose, 6, estimate.depth_pose && !input.depth_is_registered);
   set(flags, kDepthDelay, 1, estimate.depth_pose && !input.depth_is_registered);
   set(flags, kExtrinsics, 6, estimate.extrinsics && inertial);
   set(flags, kTimeOffset, 1, estimate.time_offset && inertial);
+  set(flags, kTruthPose, 7, has_truth);
   return flags;
 }
 
@@ -119,6 +128,8 @@ SharedVector vector_of(const SharedValues& shared, const RigCalibration& stated)
   add_pose(kExtrinsics, pose_of(shared.T_b_c), stated.rig.T_b_c);
   v[static_cast<int>(kTimeOffset)] = shared.time_offset_s;
   v[static_cast<int>(kDepthDelay)] = shared.depth_delay_s;
+  add_pose(kTruthPose, pose_of(shared.T_f_b), Pose{});
+  v[static_cast<int>(kTruthDelay)] = shared.truth_delay_s;
   return v;
 }
 
@@ -130,7 +141,9 @@ SharedVector prior_sigmas(const CalibrationPriors& priors, const RigCalibration&
       priors.depth_focal * stated.depth_camera.fx, priors.depth_focal * stated.depth_camera.fy,
       priors.depth_center_px, priors.depth_center_px, Eigen::Vector3d::Constant(priors.lever_m),
       Eigen::Vector3d::Constant(priors.rotation_rad), Eigen::Vector3d::Constant(priors.lever_m),
-      Eigen::Vector3d::Constant(priors.rotation_rad), priors.time_offset_s, priors.depth_delay_s;
+      Eigen::Vector3d::Constant(priors.rotation_rad), priors.time_offset_s, priors.depth_delay_s,
+      Eigen::Vector3d::Constant(priors.truth_position_m),
+      Eigen::Vector3d::Constant(priors.truth_rotation_rad), priors.truth_delay_s;
   return s;
 }
 
@@ -151,9 +164,10 @@ class Rounds {
   /// Weights the priors as if the data had larger deviations by this factor.
   void weaken_data(double factor) {
     CalibrationPriors& p = priors_;
-    for (double* const sigma : {&p.focal, &p.focal_ratio, &p.center_px, &p.distortion, &p.rolling_shutter_s,
-                                &p.depth_scale, &p.depth_offset, &p.depth_focal, &p.depth_center_px,
-                                &p.rotation_rad, &p.lever_m, &p.time_offset_s, &p.depth_delay_s})
+    for (double* const sigma :
+         {&p.focal, &p.focal_ratio, &p.center_px, &p.distortion, &p.rolling_shutter_s, &p.depth_scale,
+          &p.depth_offset, &p.depth_focal, &p.depth_center_px, &p.rotation_rad, &p.lever_m, &p.time_offset_s,
+          &p.depth_delay_s, &p.truth_rotation_rad, &p.truth_position_m, &p.truth_delay_s})
       *sigma /= factor;
   }
 
@@ -223,6 +237,16 @@ void require_content(const CalibrationInput& input, const BatchState& state) {
     return std::ranges::any_of(landmark.observations,
                                [](const BatchObservation& seen) { return seen.feature.depth_m > 0.0; });
   });
+  const CalibrationTruth& truth = input.truth;
+  const auto known =
+      static_cast<std::size_t>(std::ranges::count_if(state.keyframes, [&](const BatchKeyframe& keyframe) {
+        return truth_at(truth.trajectory, after(keyframe.t, truth.delay_s)).has_value();
+      }));
+  if (!truth.trajectory.poses.empty() && known < kMinKeyframes)
+    throw InputError("calibration", "the ground truth is known at only " + std::to_string(known) + " of " +
+                                        std::to_string(state.keyframes.size()) + " keyframes, " +
+                                        std::to_string(kMinKeyframes) +
+                                        " are needed; give that of this recording, by the same clock");
   if (!has_depth && input.imu.empty())
     throw InputError("calibration", "needs depth images or an IMU: images alone have no metric scale");
 }
@@ -378,6 +402,9 @@ class Calibration {
     result_.pixel_sigma_px = solution_.state.pixel_sigma_px;
     result_.inverse_depth_sigma = solution_.state.inverse_depth_sigma;
     result_.imu_noise = solution_.state.imu_noise;
+    result_.truth_poses = solution_.statistics.truth_poses;
+    result_.truth_sigma_m = solution_.state.truth_sigma_m;
+    result_.truth_sigma_rad = solution_.state.truth_sigma_rad;
   }
 
   void list_parameters(SharedFlags listed) {

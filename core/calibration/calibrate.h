@@ -44,6 +44,7 @@
 
 #include "core/calibration/calibration_recording.h"
 #include "core/types/rig.h"
+#include "core/types/trajectory.h"
 
 namespace stillpoint {
 
@@ -86,6 +87,9 @@ struct CalibrationPriors {
   double lever_m = 0.03;
   double time_offset_s = 0.02;
   double depth_delay_s = 0.02;
+  double truth_rotation_rad = 0.5;
+  double truth_position_m = 1.0;
+  double truth_delay_s = 0.1;
 };
 
 struct CalibrationProgress {
@@ -139,13 +143,23 @@ struct CalibrationResult {
   std::vector<ParameterEstimate> parameters;  ///< those that were to be estimated
   std::size_t keyframes = 0, landmarks = 0, observations = 0, depths = 0, inertial_factors = 0;
   double pixel_sigma_px = 0.0;
-  double inverse_depth_sigma = 0.0;  ///< [1/m]
-  ImuNoiseFactors imu_noise;         ///< by the residuals, at least 1
-  double deviation_factor = 1.0;     ///< by which the halves differ more than expected, at least 1
+  double inverse_depth_sigma = 0.0;                   ///< [1/m]
+  ImuNoiseFactors imu_noise;                          ///< by the residuals, at least 1
+  std::size_t truth_poses = 0;                        ///< keyframes at which the ground truth is known
+  double truth_sigma_m = 0.0, truth_sigma_rad = 0.0;  ///< of the ground truth, by the residuals
+  double deviation_factor = 1.0;  ///< by which the halves differ more than expected, at least 1
   HeldOutResiduals held_out;
   bool has_held_out = false;
   bool interrupted = false;  ///< by `on_iteration`
   bool usable = true;        ///< false: the solver failed, or the deviations could not be computed
+};
+
+/// A ground truth of a frame f that is fixed to the body, in a world and by a clock of its own.
+struct CalibrationTruth {
+  Trajectory trajectory;  ///< empty: none
+  Pose T_f_b;             ///< initial value, whose rotation is right to 30 degrees
+  double delay_s =
+      0.0;  ///< initial value, right to a tenth of a second: stamp of the truth minus that of the image
 };
 
 /// @param stated calibration from which the sections were computed
@@ -159,6 +173,8 @@ struct CalibrationInput {
   double gravity = 9.81;
   /// Whether the depth images have the pixels of the color camera; else those of `depth_camera`.
   bool depth_is_registered = true;
+  /// Draws the poses to it where it is known, and adds its delay and T_f_b to the parameters.
+  CalibrationTruth truth;
 };
 
 /// What tells that recordings are not of one device: the first entry of their rig files with other values, or
@@ -168,10 +184,12 @@ struct CalibrationInput {
 
 /// Adds another recording of the same device, to which only the calibration is common. Its times are moved
 /// behind those of the recordings before it; `halves` of all are then, as a rule, different recordings.
+/// @param next its ground truth is not used
 /// @throws InputError if one has no keyframes, or with a `stated_difference`
 void append_recording(CalibrationInput& all, CalibrationInput next);
 
-/// @throws InputError if fewer than ten keyframes or 50 landmarks remain, or without both depth and IMU
+/// @throws InputError if fewer than ten keyframes or 50 landmarks remain, without both depth and IMU, or if
+/// the ground truth is known at fewer than ten keyframes
 [[nodiscard]] CalibrationResult calibrate(const CalibrationInput& input, const CalibrationOptions& options);
 
 }  // namespace stillpoint

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/geometry/so3.h"
@@ -192,6 +193,63 @@ bool PosePrior::Evaluate(double const* const* x, double* residuals, double** jac
   J.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / sigma_m_);
   J.bottomRightCorner<3, 3>() = right_jacobian_inverse(rotation) / sigma_rad_;
   write_by_pose<6>(jacobians[0], J);
+  return true;
+}
+
+namespace {
+
+/// The pose after the interval of a time; the nearest one beyond the ends.
+std::vector<StampedPose>::const_iterator interval_end(const Trajectory& truth, Timestamp t) {
+  const auto next = std::ranges::lower_bound(truth.poses, t, {}, &StampedPose::t);
+  return std::clamp(next, truth.poses.begin() + 1, truth.poses.end() - 1);
+}
+
+}  // namespace
+
+std::optional<Pose> truth_at(const Trajectory& truth, Timestamp t) {
+  if (truth.poses.size() < 2 || t < truth.poses.front().t || truth.poses.back().t < t) return std::nullopt;
+  const auto next = interval_end(truth, t), last = std::prev(next);
+  const double interval_s = seconds_between(last->t, next->t);
+  if (interval_s > kMaxTruthInterval_s) return std::nullopt;
+  return interpolate(last->T_w_f, next->T_w_f, seconds_between(last->t, t) / interval_s);
+}
+
+bool TruthFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const Pose T_w_b = pose_of(x[0]), T_w_g = pose_of(x[1]), T_f_b = pose_of(x[2]);
+  const Timestamp t = after(t_, x[3][0]);
+  const auto next = interval_end(truth_, t), last = std::prev(next);
+  const double interval_s = seconds_between(last->t, next->t), passed_s = seconds_between(last->t, t);
+  const Eigen::Vector3d rate_f = log_so3(last->T_w_f.q.conjugate() * next->T_w_f.q) / interval_s;
+  const Eigen::Vector3d velocity_g = (next->T_w_f.p - last->T_w_f.p) / interval_s;
+  const Pose T_g_f{last->T_w_f.q * exp_so3(passed_s * rate_f), last->T_w_f.p + passed_s * velocity_g};
+  const Pose predicted = T_w_g * T_g_f * T_f_b;
+  const Eigen::Vector3d rotation = log_so3(predicted.q.conjugate() * T_w_b.q);
+  Eigen::Map<Eigen::Vector3d>{residuals} = (T_w_b.p - predicted.p) / sigmas_.position_m;
+  Eigen::Map<Eigen::Vector3d>{residuals + 3} = rotation / sigmas_.rotation_rad;
+  if (jacobians == nullptr) return true;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  Eigen::Matrix<double, 6, 1> weights;
+  weights << Eigen::Vector3d::Constant(1.0 / sigmas_.position_m),
+      Eigen::Vector3d::Constant(1.0 / sigmas_.rotation_rad);
+  const Eigen::Matrix3d by_predicted = -right_jacobian_inverse(-rotation);
+  const Eigen::Matrix3d R_b_f = T_f_b.R().transpose(), R_w_f = T_w_g.R() * T_g_f.R();
+  Matrix6 J = Matrix6::Zero();
+  J.topLeftCorner<3, 3>().setIdentity();
+  J.bottomRightCorner<3, 3>() = right_jacobian_inverse(rotation);
+  write_by_pose<6>(jacobians[0], weights.asDiagonal() * J);
+  J.topLeftCorner<3, 3>() = -Eigen::Matrix3d::Identity();
+  J.topRightCorner<3, 3>() = T_w_g.R() * skew(T_g_f * T_f_b.p);
+  J.bottomRightCorner<3, 3>() = by_predicted * R_b_f * T_g_f.R().transpose();
+  write_by_pose<6>(jacobians[1], weights.asDiagonal() * J);
+  J.topLeftCorner<3, 3>() = -R_w_f;
+  J.topRightCorner<3, 3>().setZero();
+  J.bottomRightCorner<3, 3>() = by_predicted;
+  write_by_pose<6>(jacobians[2], weights.asDiagonal() * J);
+  if (jacobians[3] != nullptr) {
+    Eigen::Matrix<double, 6, 1> by_delay;
+    by_delay << -(T_w_g.R() * velocity_g + R_w_f * rate_f.cross(T_f_b.p)), by_predicted * R_b_f * rate_f;
+    Eigen::Map<Eigen::Matrix<double, 6, 1>>{jacobians[3]} = weights.cwiseProduct(by_delay);
+  }
   return true;
 }
 

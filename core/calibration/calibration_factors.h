@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Residuals of the batch estimation of the calibration, as Ceres cost functions.
 ///
-/// Parameter blocks: poses T_w_b, T_b_c and T_c_d (p, q xyzw; tangent space as for PoseManifold), `camera`
-/// (fx, fy, cx, cy, eight distortion coefficients), `readout` (rolling-shutter time [s]), `depth` (scale and
-/// offset), `depth_camera` (fx, fy, cx, cy), the landmark X_w [m], and the delay of the depth image [s].
+/// Parameter blocks: poses T_w_b, T_b_c, T_c_d, T_w_g and T_f_b (p, q xyzw; tangent space as for
+/// PoseManifold), `camera` (fx, fy, cx, cy, eight distortion coefficients), `readout` (rolling-shutter time
+/// [s]), `depth` (scale and offset), `depth_camera` (fx, fy, cx, cy), the landmark X_w [m], and the delay of
+/// the depth image [s].
 #pragma once
 
 #include <Eigen/Core>
+
+#include <optional>
 
 #include <ceres/sized_cost_function.h>
 
 #include "core/geometry/camera.h"
 #include "core/geometry/pose.h"
+#include "core/types/trajectory.h"
 
 namespace stillpoint {
 
@@ -94,5 +98,34 @@ class PosePrior final : public ceres::SizedCostFunction<6, 7> {
   Pose mean_;
   double sigma_m_, sigma_rad_;
 };
+
+/// A ground truth T_g_f of the frame f in its own world g, stamped by its own clock, at a keyframe of time t.
+/// With the delay d of the ground truth, and T(d) = T_w_g T_g_f(t + d) T_f_b, whose T_g_f is interpolated:
+///
+///   r = ((p_w_b - p(d)) / sigma_m, Log(q(d)^-1 q_w_b) / sigma_rad)
+///
+/// Parameter blocks: T_w_b, T_w_g, T_f_b, d [s].
+class TruthFactor final : public ceres::SizedCostFunction<6, 7, 7, 7, 1> {
+ public:
+  struct Sigmas {
+    double position_m, rotation_rad;
+  };
+
+  /// @param truth at least two poses; must outlive the factor
+  TruthFactor(const Trajectory& truth, Timestamp t, const Sigmas& sigmas)
+      : truth_(truth), t_(t), sigmas_(sigmas) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  const Trajectory& truth_;
+  Timestamp t_;
+  Sigmas sigmas_;
+};
+
+/// Longest interval of a ground truth that is interpolated [s].
+inline constexpr double kMaxTruthInterval_s = 0.15;
+
+/// The pose at a time; nullopt beyond the ends, and in longer intervals.
+[[nodiscard]] std::optional<Pose> truth_at(const Trajectory& truth, Timestamp t);
 
 }  // namespace stillpoint

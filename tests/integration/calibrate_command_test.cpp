@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint calibrate`: table, JSON, the rig file that it writes, and its errors.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iterator>
+#include <numbers>
 #include <regex>
+#include <sstream>
+
+#include <Eigen/Geometry>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -112,6 +118,51 @@ TEST(CalibrateCommand, NamesTheRecordingsAndTheFieldOfDifferentDevicesBeforeItTr
   EXPECT_NE(result.err.find(sequence + ", " + other), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("[imu] accel_noise is "), std::string::npos) << result.err;
   EXPECT_EQ(result.err.find("tracking"), std::string::npos) << result.err;
+}
+
+/// The ground truth of the sequence in another world, of a frame turned by 90 degrees, 59 ms late.
+void write_other_truth(const fs::path& file, double late_s) {
+  std::ifstream in(rendered_sequence() / "groundtruth.txt");
+  std::ofstream out(file);
+  out << std::fixed << std::setprecision(9);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream row(line);
+    double t = 0.0;
+    Eigen::Vector3d p;
+    Eigen::Quaterniond q;
+    if (!(row >> t >> p.x() >> p.y() >> p.z() >> q.x() >> q.y() >> q.z() >> q.w())) continue;
+    const Eigen::AngleAxisd world(1.0, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()),
+        body(0.5 * std::numbers::pi, Eigen::Vector3d::UnitX());
+    p = world * p + Eigen::Vector3d(5.0, -3.0, 1.0);
+    q = world * q * body;
+    out << t + late_s << ' ' << p.transpose() << ' ' << q.coeffs().transpose() << '\n';
+  }
+}
+
+TEST(CalibrateCommand, FindsTheDelayOfAGroundTruth) {
+  const TemporaryFolder folder;
+  const std::string truth = (folder.path() / "late.txt").string();
+  write_other_truth(truth, 0.059);
+  const ProgramResult result =
+      run_program(calibrate_with({"--json", "--truth", truth, "--fault", "focal_error:amount=4"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json delay = parameter_of(result.out, "truth delay");
+  EXPECT_NEAR(delay["value"].get<double>(), 59.0, std::min(3.0 * delay["sigma"].get<double>(), 3.0));
+  const nlohmann::json fx = parameter_of(result.out, "fx");
+  const double expected = fx["stated"].get<double>() / 1.04;
+  EXPECT_NEAR(fx["value"].get<double>(), expected, 3.0 * fx["sigma"].get<double>());
+}
+
+TEST(CalibrateCommand, RejectsAGroundTruthOfAnotherTimeOrOfSeveralRecordings) {
+  const TemporaryFolder folder;
+  const std::string truth = (folder.path() / "late.txt").string();
+  write_other_truth(truth, 100.0);
+  const ProgramResult late = run_program(calibrate_with({"--truth", truth, "--max-frames", "30"}));
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_NE(late.err.find("no poses at the time of the frames"), std::string::npos) << late.err;
+  const ProgramResult several = run_program(calibrate_with({folder.path().string(), "--truth", truth}));
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_NE(several.err.find("--truth"), std::string::npos) << several.err;
 }
 
 TEST(CalibrateCommand, DrawsTheResidualFieldBeforeAndAfter) {

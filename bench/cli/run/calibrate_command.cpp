@@ -20,13 +20,16 @@
 #include "bench/cli/run/calibration_report.h"
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/config/config_file.h"
+#include "bench/diagnose/evidence/angular_rates.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/record/output_folder.h"
 #include "bench/run/odometry_run.h"
 #include "core/base/error.h"
 #include "core/calibration/calibrate.h"
 #include "core/calibration/calibration_recording.h"
+#include "core/geometry/so3.h"
 #include "datasets/calibration/rig_yaml_text.h"
+#include "eval/io/trajectory_file.h"
 #include "reports/drawing/drawing.h"
 #include "reports/drawing/theme.h"
 
@@ -36,9 +39,12 @@ namespace {
 constexpr double kLeastInterval_s = 0.1;  // between keyframes
 constexpr double kMostKeyframes = 300.0;
 constexpr std::size_t kIterationsPerRound = 25;
+constexpr double kLargestTruthDelay_s = 0.5;
+constexpr double kLargestTruthResidual = 0.6;  // of the rotation between the rates, relative to them
+constexpr std::size_t kLeastTruthFrames = 30;
 
 struct CalibrateArguments {
-  std::string out, plot, out_format, rig, format, base = "stillpoint", variant;
+  std::string out, plot, out_format, rig, format, truth, base = "stillpoint", variant;
   std::vector<std::string> sequences, settings, topics, faults, keep;
   double start_s = 0.0;
   int max_frames = 0;
@@ -79,7 +85,7 @@ CalibrationSwitches switches_of(const CalibrateArguments& arguments) {
 }
 
 OutputRules rules_of(const CalibrateArguments& arguments) {
-  return {.inputs = {arguments.rig}, .force = false, .beginning = {}};
+  return {.inputs = {arguments.rig, arguments.truth}, .force = false, .beginning = {}};
 }
 
 /// @param raw_depth without registration of depth images to the color camera
@@ -145,6 +151,63 @@ Recording opened_recording(const CalibrateArguments& arguments, const std::strin
   return {sequence, std::move(stream), config, std::move(input)};
 }
 
+/// Mean rates of the body from frame to frame of one world.
+class FrameRates {
+ public:
+  void add(const OdometryUpdate& update, Timestamp t) {
+    if (is_located(update.status) && segment_ == update.segment) {
+      const double interval_s = seconds_between(t_, t);
+      const Eigen::Quaterniond turned = q_w_b_.conjugate() * update.state.T_w_b.q;
+      rates_.push_back({t_, t, log_so3(turned) / interval_s});
+    }
+    segment_ = is_located(update.status) ? update.segment : -1;
+    t_ = t;
+    q_w_b_ = update.state.T_w_b.q;
+  }
+  [[nodiscard]] const std::vector<RateInterval>& intervals() const { return rates_; }
+
+ private:
+  int segment_ = -1;
+  Timestamp t_;
+  Eigen::Quaterniond q_w_b_ = Eigen::Quaterniond::Identity();
+  std::vector<RateInterval> rates_;
+};
+
+/// Delay and rotation by the angular rates of both.
+/// @throws InputError if the ground truth is not of this time, or does not turn as the recording does
+CalibrationTruth started_truth(const std::string& file, const Trajectory& trajectory,
+                               std::vector<RateInterval> rates) {
+  const auto is_apart = [&](const RateInterval& interval) {
+    return trajectory.poses.empty() || interval.from < trajectory.poses.front().t ||
+           trajectory.poses.back().t < interval.to;
+  };
+  std::erase_if(rates, is_apart);
+  if (rates.empty())
+    throw InputError(file,
+                     "has no poses at the time of the frames; give the ground truth of this recording, "
+                     "stamped to half a second by its clock");
+  const RateIntegral truth(trajectory);
+  constexpr int kSteps = 100;
+  RotationFit best{.residual = kLargestTruthResidual};
+  int best_step = kSteps;
+  for (int step = -kSteps; step <= kSteps; ++step) {
+    const std::vector<RatePair> pairs = rate_pairs(truth, rates, kLargestTruthDelay_s * step / kSteps);
+    if (pairs.size() < kLeastTruthFrames || 2 * pairs.size() < rates.size()) continue;
+    const RotationFit fit = fit_rotation(pairs);
+    if (fit.residual >= best.residual) continue;
+    best = fit;
+    best_step = step;
+  }
+  if (std::abs(best_step) == kSteps)
+    throw InputError(
+        file, fmt::format("does not turn as the recording does, over at least {} frames at a delay below {} "
+                          "s; give the ground truth of this recording, with orientations at 10 Hz or more",
+                          kLeastTruthFrames, kLargestTruthDelay_s));
+  return {.trajectory = trajectory,
+          .T_f_b = Pose{best.q_a_b, Eigen::Vector3d::Zero()},
+          .delay_s = kLargestTruthDelay_s * best_step / kSteps};
+}
+
 /// Adds the keyframes of a run of the odometry. @return whether it was not interrupted
 /// @param interval_s between keyframes
 bool track(const CalibrateArguments& arguments, Recording& recording, double interval_s) {
@@ -153,15 +216,19 @@ bool track(const CalibrateArguments& arguments, Recording& recording, double int
   const RunSpec spec{.config = recording.config,
                      .max_frames = static_cast<std::size_t>(arguments.max_frames)};
   CalibrationCollector collector(interval_s);
+  FrameRates rates;
   ProgressLine progress("tracking " + info.name, info.frame_times.size(), "frames");
   RunControl control{.stop_requested = interrupt_requested};
   control.on_frame.emplace_back([&](const FrameReport& report) {
     collector.add(report.tracked, report.dynamic.labels, report.update);
+    rates.add(report.update, report.tracked.t);
     progress.update(static_cast<std::size_t>(report.update.frame_id) + 1);
   });
   const OdometryRun run = run_odometry(stream, spec, control);
   if (run.summary.interrupted) return false;
   recording.input.sections = collector.finish();
+  CalibrationTruth& truth = recording.input.truth;
+  if (!arguments.truth.empty()) truth = started_truth(arguments.truth, truth.trajectory, rates.intervals());
   if (info.depth_camera) load_raw_depth(arguments, recording.sequence, recording.input);
   return true;
 }
@@ -250,9 +317,16 @@ int calibrate_sequences(const CalibrateArguments& arguments) {
   const datasets::RigFormat format = out_format_of(arguments);
   if (!arguments.out.empty()) require_safe_output(arguments.out, rules_of(arguments));
   if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules_of(arguments));
+  Trajectory truth;
+  if (!arguments.truth.empty()) {
+    if (arguments.sequences.size() > 1)
+      throw InputError("--truth", "is that of one recording, and several are given; calibrate one");
+    truth = eval::read_trajectory({.path = arguments.truth}).trajectory;
+  }
   install_interrupt_handlers();
   std::vector<Recording> recordings = open_recordings(arguments);
   if (recordings.empty()) return kExitInterrupted;
+  recordings.front().input.truth.trajectory = std::move(truth);
   const std::optional<CalibrationInput> input = track_all(arguments, recordings);
   if (!input) return kExitInterrupted;
   const CalibrationResult result = estimate(arguments, *input);
@@ -276,7 +350,9 @@ Command calibrate_command() {
   return {
       .name = "calibrate",
       .summary = "Estimate the calibration from recordings, without a target; write a rig file",
-      .example = "calibrate walking_xyz --out rig.toml",
+      .example =
+          "calibrate walking_xyz --out rig.toml\n"
+          "  stillpoint calibrate walking_xyz --truth mocap.tum --out rig.toml",
       .options =
           {{"SEQ", "Sequence folders, bags or preset names, of one device", &a->sequences},
            {"--out", "Rig file to write; an existing file is not replaced", &a->out},
@@ -289,6 +365,11 @@ Command calibrate_command() {
            {"--depth-camera",
             "Depth images are those of another camera, not registered: estimate its intrinsics and pose",
             &a->depth_camera},
+           {"--truth",
+            "Ground truth of the recording, as for `eval`: poses are drawn to it; its delay and T_f_b, the "
+            "pose "
+            "of the body (IMU, without one the camera) in its frame, are estimated",
+            &a->truth},
            {"--rig", kRigHelp, &a->rig},
            {"--config", "Base config: an embedded name or a TOML file", &a->base},
            {"--variant", "Overlays joined by + [vo without an IMU]", &a->variant},

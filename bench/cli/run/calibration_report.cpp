@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,7 +50,7 @@ std::vector<std::string> remarks(const CalibrationSubject& subject, const Calibr
   std::vector<std::string> lines;
   if (result.interrupted) lines.emplace_back("interrupted: the values are those of the last iteration");
   if (!result.usable) lines.emplace_back("doubtful: the solver failed, or the deviations cannot be computed");
-  if (!subject.has_imu)
+  if (!subject.has_imu && result.truth_poses == 0)
     lines.emplace_back(
         "without an IMU the scale is that of the depth sensor: the depth scale cannot be observed");
   if (result.deviation_factor > 3.0)
@@ -73,6 +74,11 @@ std::string residual_text(const CalibrationResult& result) {
     text += fmt::format("; noise of the IMU {:.1f} (gyro) and {:.1f} (accel) times the stated one",
                         result.imu_noise.gyro, result.imu_noise.accel);
   text += '\n';
+  if (result.truth_poses > 0)
+    text += fmt::format(
+        "ground truth at {} keyframes; deviation of its positions {:.1f} mm, of its rotations "
+        "{:.2f} deg\n",
+        result.truth_poses, 1e3 * result.truth_sigma_m, result.truth_sigma_rad * 180.0 / std::numbers::pi);
   if (!result.has_held_out) return text;
   const HeldOutResiduals& held_out = result.held_out;
   return text +
@@ -109,7 +115,7 @@ std::string calibration_json(const CalibrationSubject& subject, const Calibratio
                           {"outcome", outcome_name(p.outcome)}});
   }
   const HeldOutResiduals& h = result.held_out;
-  Json json = {{"schema", 1},
+  Json json = {{"schema", 2},
                {"sequence", subject.sequence},
                {"keyframes", result.keyframes},
                {"landmarks", result.landmarks},
@@ -123,6 +129,10 @@ std::string calibration_json(const CalibrationSubject& subject, const Calibratio
                {"parameters", parameters},
                {"interrupted", result.interrupted},
                {"remarks", remarks(subject, result)}};
+  if (result.truth_poses > 0)
+    json["truth"] = {{"keyframes", result.truth_poses},
+                     {"sigma_m", result.truth_sigma_m},
+                     {"sigma_rad", result.truth_sigma_rad}};
   if (result.has_held_out)
     json["held_out"] = {{"pixel_before_px", h.pixel_before_px},
                         {"pixel_after_px", h.pixel_after_px},

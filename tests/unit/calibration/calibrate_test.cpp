@@ -163,6 +163,55 @@ TEST(Calibrate, ClaimsLargerDeviationsForTracksThatDrift) {
   EXPECT_LT(errors.squares / errors.count, 2.0);
 }
 
+const Pose kTruthBody{exp_so3({0.3, -0.2, 1.1}), {0.05, -0.1, 0.2}};  // T_f_b
+constexpr double kTruthDelay_s = 0.04;
+
+/// Ground truth at 100 Hz in another world, of another frame, late, up to a time, with initial values that
+/// are off.
+CalibrationTruth recorded_truth(const SimulatedMotion& motion, double end_s) {
+  const Pose T_g_w{exp_so3({0.1, 0.4, -2.0}), {3.0, -1.0, 0.5}};
+  CalibrationTruth truth{.T_f_b = Pose{kTruthBody.q * exp_so3({0.05, 0.05, -0.05}), Eigen::Vector3d::Zero()},
+                         .delay_s = kTruthDelay_s + 0.02};
+  for (int i = 0; i < static_cast<int>(100.0 * end_s); ++i) {
+    const double t = 0.01 * i;
+    const Pose T_w_b = SimulatedMotion::state(motion.path_time(t + motion.time_offset_s)).T_w_b;
+    truth.trajectory.poses.emplace_back(after(motion.frame(0, 0.0).t, t + kTruthDelay_s),
+                                        T_g_w * T_w_b * kTruthBody.inverse());
+  }
+  return truth;
+}
+
+TEST(Calibrate, FindsDelayAndFrameOfAGroundTruth) {
+  const Rig stated = stated_rig(7);
+  const SimulatedMotion motion = recorded_motion(7);
+  CalibrationInput input = recording(motion, stated);
+  const CalibrationResult without = calibrate(input, {.hold_out = false});
+  for (const double end_s : {kSeconds, 0.5 * kSeconds}) {
+    input.truth = recorded_truth(motion, end_s);
+    const CalibrationResult result = calibrate(input, {.hold_out = false});
+    ASSERT_TRUE(result.usable);
+    EXPECT_EQ(result.truth_poses < result.keyframes, end_s < kSeconds);
+    const Eigen::Vector3d rotation_deg = 180.0 / std::numbers::pi * log_so3(kTruthBody.q);
+    const auto expect_near = [&](const std::string& name, double expected, double most) {
+      const ParameterEstimate& estimate = parameter(result, name);
+      EXPECT_NEAR(estimate.value, expected, std::min(3.0 * estimate.sigma, most)) << name;
+    };
+    expect_near("truth delay", 1e3 * kTruthDelay_s, 1.0);
+    const char* const axes[] = {"x", "y", "z"};
+    for (int axis = 0; axis < 3; ++axis) {
+      expect_near(std::string("truth T_f_b ") + axes[axis], 1e3 * kTruthBody.p[axis], 20.0);
+      expect_near(std::string("truth T_f_b rotation ") + axes[axis], rotation_deg[axis], 0.5);
+    }
+    for (const char* name : {"fx", "cx", "depth scale", "T_b_c rotation x", "time_offset_s"}) {
+      const ParameterEstimate& estimate = parameter(result, name);
+      EXPECT_LT(std::abs(estimate.value - true_value(estimate, stated)), 3.0 * estimate.sigma) << name;
+      EXPECT_LE(estimate.sigma, 1.05 * parameter(without, name).sigma) << name;
+    }
+  }
+  input.truth = recorded_truth(motion, 1.0);
+  expect_input_error([&] { static_cast<void>(calibrate(input, {})); }, {"ground truth", "keyframes"});
+}
+
 TEST(Calibrate, WithoutAnImuTheDepthScaleStaysAsStated) {
   const CalibrationResult result =
       calibrate(recording(recorded_motion(1), stated_rig(1), false), {.hold_out = false});
