@@ -73,7 +73,7 @@ max_frames = 15
 images = 2
 [rendered]
 sequences = ["walking_static", "walking_xyz"]
-seconds = 1.0
+seconds = 0.5
 PLAN
 }
 

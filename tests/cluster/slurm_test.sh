@@ -31,6 +31,7 @@ MpiDefault=none
 JobAcctGatherType=jobacct_gather/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
+SchedulerParameters=batch_sched_delay=0,sched_interval=1,sched_min_interval=0,bf_interval=1
 ReturnToService=2
 JobRequeue=1
 NodeName=$node NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN Features=test_class

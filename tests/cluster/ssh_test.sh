@@ -86,7 +86,7 @@ modules=("$(dirname "$program")"/lib/libstillpoint_*.so)
 cp "${modules[@]}" "$work/root/usr/lib/$libraries/stillpoint"
 ldd "$program" "${modules[@]}" | grep -o '/[^ :]*\.so[^ :]*' | sort -u | xargs cp -L --target-directory="$work/root/usr/lib/$libraries"
 cp "$(dirname "${BASH_SOURCE[0]}")/../../scripts/package/launcher.sh" "$work/root/stillpoint"
-tar --create --zstd --directory "$work/root" --file "$work/root.tar.zst" .
+tar --create --use-compress-program='zstd --fast=5' --directory "$work/root" --file "$work/root.tar.zst" .
 printf 'Package: stillpoint\nVersion: 0\nArchitecture: all\nMaintainer: x <x@example.org>\nDescription: test\n' \
   >"$work/deb/DEBIAN/control"
 dpkg-deb --build --root-owner-group -Znone "$work/deb" "$work/program.deb" >/dev/null
