@@ -366,7 +366,7 @@ Command calibrate_command() {
             "Depth images are those of another camera, not registered: estimate its intrinsics and pose",
             &a->depth_camera},
            {"--truth",
-            "Ground truth of the recording, as for `eval`: poses are drawn to it; its delay and T_f_b, the "
+            "File with the ground truth of the recording: poses are drawn to it; its delay and T_f_b, the "
             "pose "
             "of the body (IMU, without one the camera) in its frame, are estimated",
             &a->truth},
