@@ -159,7 +159,7 @@ row bench/minimal core/base bench/config bench/cli bench/plan bench/run bench/sy
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_module\.cpp$'
   '<blosc            ^datasets/cache/frame_file\.cpp$'
-  '<libdeflate       ^datasets/(io/image_io|bags/bag_chunks)\.cpp$'
+  '<isa-l/           ^datasets/(io/image_io|bags/bag_chunks)\.cpp$'
   '<(bzlib|lz4)       ^datasets/bags/bag_chunks\.cpp$'
   '<turbojpeg        ^datasets/io/image_io\.cpp$'
   '<embree[34]/        ^datasets/synthetic/render/embree\.h$'

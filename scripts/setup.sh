@@ -19,7 +19,7 @@ minimal=(
   libeigen3-dev libceres-dev libsuitesparse-dev
   libopencv-dev
   libhwy-dev
-  libopenimageio-dev libdeflate-dev libturbojpeg0-dev libblosc-dev
+  libopenimageio-dev libisal-dev libturbojpeg0-dev libblosc-dev
   libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev
 )

@@ -3,7 +3,7 @@
 
 #include <bzlib.h>
 #include <fcntl.h>
-#include <libdeflate.h>
+#include <isa-l/crc.h>
 #include <lz4frame.h>
 #include <unistd.h>
 #include <zstd.h>
@@ -218,7 +218,7 @@ std::string decompress_zstd(std::string_view stored, const std::string& place) {
 }
 
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t previous) {
-  return libdeflate_crc32(previous, bytes.data(), bytes.size());
+  return crc32_gzip_refl(previous, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
 namespace {

@@ -18,7 +18,7 @@ find_package(yaml-cpp 0.7 REQUIRED)
 # Not find_package: Debian's OpenImageIO config file fails without openimageio-tools.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
-pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate>=1.14)
+pkg_check_modules(ISAL REQUIRED IMPORTED_TARGET libisal>=2.30)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg>=2.1)
 pkg_check_modules(BLOSC REQUIRED IMPORTED_TARGET blosc>=1.21)
 if(STILLPOINT_UNIT_TESTS)

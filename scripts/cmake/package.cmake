@@ -56,7 +56,7 @@ truth, trajectory evaluation, and plans of experiments.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME stillpoint-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 string(CONCAT library_depends "stillpoint (= ${PROJECT_VERSION}), libeigen3-dev, libceres-dev, libsuitesparse-dev, libopencv-dev, "
-       "libhwy-dev, libfmt-dev, libtomlplusplus-dev, libyaml-cpp-dev, libsqlite3-dev, libturbojpeg0-dev, libdeflate-dev, "
+       "libhwy-dev, libfmt-dev, libtomlplusplus-dev, libyaml-cpp-dev, libsqlite3-dev, libturbojpeg0-dev, libisal-dev, "
        "libblosc-dev, libbz2-dev, liblz4-dev, libzstd-dev, pkg-config")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${library_depends}")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "RGB-D inertial odometry for dynamic scenes (development files)

@@ -2,7 +2,8 @@
 #include "datasets/io/image_io.h"
 
 #include <gtest/gtest.h>
-#include <libdeflate.h>
+#include <isa-l/crc.h>
+#include <isa-l/igzip_lib.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -21,17 +22,24 @@ std::string big_endian(std::uint32_t value) {
   return bytes;
 }
 
+std::uint8_t* bytes_of(std::string& text) { return reinterpret_cast<std::uint8_t*>(text.data()); }
+
 std::string chunk(const std::string& type, const std::string& data) {
-  const std::string content = type + data;
+  std::string content = type + data;
   return big_endian(static_cast<std::uint32_t>(data.size())) + content +
-         big_endian(libdeflate_crc32(0, content.data(), content.size()));
+         big_endian(crc32_gzip_refl(0, bytes_of(content), content.size()));
 }
 
-std::string compressed(const std::string& bytes) {
-  libdeflate_compressor* const compressor = libdeflate_alloc_compressor(6);
-  std::string out(libdeflate_zlib_compress_bound(compressor, bytes.size()), '\0');
-  out.resize(libdeflate_zlib_compress(compressor, bytes.data(), bytes.size(), out.data(), out.size()));
-  libdeflate_free_compressor(compressor);
+std::string compressed(std::string bytes) {
+  std::string out(2 * bytes.size() + 1000, '\0');
+  isal_zstream stream;
+  isal_deflate_stateless_init(&stream);
+  stream.gzip_flag = IGZIP_ZLIB;
+  stream.end_of_stream = 1;
+  stream.next_in = bytes_of(bytes), stream.avail_in = static_cast<std::uint32_t>(bytes.size());
+  stream.next_out = bytes_of(out), stream.avail_out = static_cast<std::uint32_t>(out.size());
+  EXPECT_EQ(isal_deflate_stateless(&stream), COMP_OK);
+  out.resize(stream.total_out);
   return out;
 }
 
