@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint eval`: evaluates trajectory files.
-#include <malloc.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <future>
@@ -225,16 +223,7 @@ eval::TimeOffset time_offset_of(const Trajectory& gt, const report::EvaluatedRun
   return *found;
 }
 
-/// Freed buffers of 10^6 numbers are used again instead of returned to the system, which would have to clear
-/// their pages each time.
-void keep_freed_buffers() {
-  constexpr int kBufferBytes = 1 << 30;
-  mallopt(M_MMAP_THRESHOLD, kBufferBytes);
-  mallopt(M_TRIM_THRESHOLD, kBufferBytes);
-}
-
 int evaluate_files(const EvalArguments& arguments) {
-  keep_freed_buffers();
   if (arguments.files.ground_truth.empty() || arguments.files.estimates.empty()) {
     throw InputError("command line", "eval requires a ground truth and an estimate; try --help");
   }
