@@ -37,12 +37,13 @@ cv::Mat halved(const cv::Mat& rgb) {
 Texture::Texture(const cv::Mat& rgb) {
   STILLPOINT_CHECK(rgb.type() == CV_8UC3 && std::has_single_bit(static_cast<unsigned>(rgb.cols)) &&
                    std::has_single_bit(static_cast<unsigned>(rgb.rows)));
-  texels_.reserve(4 * rgb.total() / 3 + 1);  // of all levels
+  texels_.reserve((4 * rgb.total() + 6 * static_cast<std::size_t>(rgb.rows)) / 3 + 4);  // of all levels
   for (cv::Mat level = rgb;; level = halved(level)) {
     levels_.push_back({level.cols, level.rows, texels_.size()});
     for (int row = 0; row < level.rows; ++row) {
       for (int column = 0; column < level.cols; ++column)
         texels_.push_back(packed(level.at<cv::Vec3b>(row, column)));
+      texels_.push_back(packed(level.at<cv::Vec3b>(row, 0)));
     }
     if (level.cols == 1 && level.rows == 1) break;
   }

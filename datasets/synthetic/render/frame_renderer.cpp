@@ -29,13 +29,6 @@ constexpr std::array<float, kLightSamples> kLevelDither{0.625F, 0.125F, 0.875F, 
 /// Each sample covers about half a pixel's width; a filter width of sqrt(1/2) px trades blur for aliasing.
 constexpr float kLevelBias = -0.5F;
 
-/// log2 from the exponent and a linear approximation of the mantissa; error < 0.09.
-float approximate_log2(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  const float exponent = static_cast<float>(static_cast<int>(bits >> 23) - 127);
-  return exponent + static_cast<float>(bits & 0x7fffffU) * 0x1.0p-23F;
-}
-
 /// Ray time of a light sample.
 float sample_time(const Exposure& exposure, std::size_t pose_row, std::size_t sample) {
   const auto offset = static_cast<float>(kSampleTimes[sample]);
@@ -48,22 +41,6 @@ struct View {
 };
 
 View view_of(const Pose& T_w_c) { return {T_w_c.R().cast<float>(), T_w_c.p.cast<float>()}; }
-
-Eigen::Vector3f normal_of(const StaticMesh& mesh, const MeshTriangle& triangle) {
-  const Eigen::Vector3f& corner = mesh.vertices[triangle.corners[0]];
-  const Eigen::Vector3f first = mesh.vertices[triangle.corners[1]] - corner;
-  return first.cross(mesh.vertices[triangle.corners[2]] - corner).normalized();
-}
-
-/// The texels whose bilinear interpolation is that of the corners' colors, see MeshTriangle::colors.
-Texture::Cell corner_colors(const MeshTriangle& triangle, float u, float v) {
-  return {.upper = triangle.colors.data(),
-          .lower = triangle.colors.data() + 2,
-          .column = 0,
-          .next_column = 1,
-          .weight_x = u / std::max(1.0F - v, 1e-6F),
-          .weight_y = v};
-}
 
 /// Displacement of the triangle's centroid over the motion interval [m].
 float displacement_m(const MovingMesh& mesh, std::size_t triangle) {
@@ -94,19 +71,11 @@ struct FrameRenderer::LightSample {
   [[nodiscard]] Eigen::Vector3f ray(std::size_t at) const { return {rays.x[at], rays.y[at], 1.0F}; }
 };
 
-/// A pixel of a tile.
-struct FrameRenderer::Hit {
-  const View* view;
-  Eigen::Vector3f ray;  ///< in camera coordinates, see LightSample::ray
-  std::size_t at;
-};
-
 struct FrameRenderer::Job {
   const Exposure* exposure;
-  const MoverFrame* mover_frame;
   const RayTracer::Movers* movers;
   std::vector<std::array<View, kLightSamples>> views;  // per row
-  std::vector<float> vertex_light;
+  VisibleWorld visible;
   std::vector<MoverTiles> tiles;                // one, or one per light sample
   std::span<const SurfaceTiles> quads, moving;  // one per sample time, or none: rays are traced
   [[nodiscard]] bool may_show_movers(const Block& block, std::size_t sample) const {
@@ -156,7 +125,7 @@ FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const 
 
 const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const MoverFrame* movers,
                                            RenderBuffers& buffers) const {
-  Job job{&exposure, movers, nullptr, {}, {}, {}, {}, {}};
+  Job job{&exposure, nullptr, {}, {&world_, movers}, {}, {}, {}};
   for (const std::array<Pose, kLightSamples>& poses : exposure.poses) {
     std::array<View, kLightSamples> views;
     std::transform(poses.begin(), poses.end(), views.begin(), view_of);
@@ -165,7 +134,7 @@ const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const Mover
   const bool has_movers = movers != nullptr && !movers->mesh.triangles.empty();
   if (has_movers) {
     for (std::size_t i = 0; i < movers->mesh.start.size(); ++i)
-      job.vertex_light.push_back(unshadowed_light(world_, movers->mesh.start[i], movers->normals[i]));
+      job.visible.vertex_light.push_back(unshadowed_light(world_, movers->mesh.start[i], movers->normals[i]));
   }
   std::optional<RayTracer::Movers> mover_scene;
   if (exposure.poses.size() == 1 && !camera_.has_distortion() && world_.mesh.triangles.empty()) {
@@ -226,16 +195,26 @@ void FrameRenderer::for_each_block(const Tile& tile, Function&& function) const 
 }
 
 void FrameRenderer::render_tile(const Job& job, const Tile& tile, RenderedFrame& frame) const {
-  std::array<Float4, Tile::kPixels> light{};
+  TileShading shading(job.visible);
   TileHits hits;
   for (std::size_t sample = 0; sample < kLightSamples; ++sample) {
     const LightSample at{tile, sample, rays_through(tile, sample)};
     find_surfaces(job, at, hits);
     if (sample == 0) record_geometry(job, tile, hits, frame);
-    add_light(job, at, hits, light);
+    TileSample shown{.rays = at.rays,
+                     .hits = hits,
+                     .R_w_c = {},
+                     .pixel_size = 1.0F / static_cast<float>(camera_.fx),
+                     .level_bias = kLevelBias + kLevelDither[sample]};
+    for (int row = 0; row < Tile::kRows; ++row) {
+      shown.R_w_c[static_cast<std::size_t>(row)] =
+          &job.view(std::min(tile.row + row, camera_.height - 1), sample).R_w_c;
+    }
+    shading.add(shown, 1.0F / kLightSamples);
   }
-  for_each_pixel(
-      tile, [&](std::size_t at, int row, int column) { frame.radiance[pixel_at(row, column)] = light[at]; });
+  for_each_pixel(tile, [&](std::size_t at, int row, int column) {
+    frame.radiance[pixel_at(row, column)] = shading.light(at);
+  });
 }
 
 TileRays FrameRenderer::rays_through(const Tile& tile, std::size_t sample) const {
@@ -293,130 +272,25 @@ void FrameRenderer::store(const RayPacket& packet, const Block& block, TileHits&
   for (int lane = 0; lane < kPacket; ++lane) {
     if (packet.primitive[lane] < 0) continue;
     const std::size_t at = block.in_tile(lane);
-    hits.z[at] = packet.far[lane];  // the ray has length 1 along the optical axis
+    hits.inverse_z[at] = 1.0F / packet.far[lane];  // the ray has length 1 along the optical axis
     hits.u[at] = packet.u[lane];
     hits.v[at] = packet.v[lane];
-    hits.primitive[at] = packet.primitive[lane];
-    hits.moving[at] = packet.moving[lane] ? 1 : 0;
+    hits.surface[at] = packet.primitive[lane] | (packet.moving[lane] ? TileHits::kMoving : 0);
   }
-}
-
-/// What the light samples in the pixels of a tile show.
-struct FrameRenderer::TileTexels {
-  alignas(64) std::array<float, Tile::kPixels> texels_per_m{};
-  alignas(64) std::array<float, Tile::kPixels> height;  ///< distance of the plane from the camera [m]
-  alignas(64) std::array<float, Tile::kPixels> level;   ///< mip level
-  std::array<const Texture*, Tile::kPixels> texture;    ///< null: the colors of the corners of a triangle
-  std::array<float, Tile::kPixels> s, t;                ///< texture coordinates
-  std::array<float, Tile::kPixels> light;               ///< irradiance
-};
-
-void FrameRenderer::find_texels(const Job& job, const LightSample& sample, const TileHits& hits,
-                                TileTexels& texels) const {
-  std::int32_t last = -1;
-  float last_height = 0.0F;
-  for_each_pixel(sample.tile, [&](std::size_t at, int row, int) {
-    if (hits.primitive[at] < 0) return;
-    const View& view = job.view(row, sample.number);
-    const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
-    if (hits.moving[at] != 0 || primitive >= world_.quads.size()) {
-      last = -1;
-      find_triangle_texels(job, {&view, sample.ray(at), at}, hits, texels);
-      return;
-    }
-    const Quad& quad = world_.quads[primitive];
-    if (hits.primitive[at] != last || job.views.size() > 1)
-      last_height = quad.normal.dot(quad.origin - view.p_w);
-    last = hits.primitive[at];
-    texels.texels_per_m[at] = quad.texels_per_m;
-    texels.height[at] = last_height;
-    texels.texture[at] = &world_.textures[static_cast<std::size_t>(quad.texture)];
-    texels.s[at] = quad.s + hits.u[at] * quad.s_per_u;
-    texels.t[at] = quad.t + hits.v[at] * quad.t_per_v;
-    texels.light[at] = baked_light(world_, quad, hits.u[at], hits.v[at]);
-  });
-}
-
-void FrameRenderer::find_triangle_texels(const Job& job, const Hit& hit, const TileHits& hits,
-                                         TileTexels& texels) const {
-  const std::size_t at = hit.at;
-  const float u = hits.u[at], v = hits.v[at];
-  const auto blend = [w = 1.0F - u - v, u, v](const auto& a, const auto& b, const auto& c) {
-    return std::decay_t<decltype(a)>(w * a + u * b + v * c);
-  };
-  const auto set = [&](int texture, const std::array<Eigen::Vector2f, 3>& uv, float texels_per_m,
-                       const Eigen::Vector3f& normal) {
-    const Eigen::Vector2f st = blend(uv[0], uv[1], uv[2]);
-    texels.texture[at] = texture < 0 ? nullptr : &world_.textures[static_cast<std::size_t>(texture)];
-    texels.s[at] = st.x(), texels.t[at] = st.y();
-    texels.texels_per_m[at] = texels_per_m;
-    texels.height[at] = normal.dot(hit.view->R_w_c * hit.ray) * hits.z[at];
-  };
-  const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
-  if (hits.moving[at] == 0) {
-    const MeshTriangle& triangle = world_.mesh.triangles[primitive - world_.quads.size()];
-    set(triangle.texture, triangle.uv, triangle.texels_per_m, normal_of(world_.mesh, triangle));
-    texels.light[at] = 1.0F;
-    return;
-  }
-  const MoverTriangle& appearance = job.mover_frame->appearance[primitive];
-  const auto& [a, b, c] = job.mover_frame->mesh.triangles[primitive];
-  const auto& normals = job.mover_frame->normals;
-  set(appearance.texture, appearance.uv, appearance.texels_per_m,
-      blend(normals[a], normals[b], normals[c]).normalized());
-  texels.light[at] = blend(job.vertex_light[a], job.vertex_light[b], job.vertex_light[c]);
-}
-
-/// Mip levels: the footprint of half a pixel at the hit, stretched by the slant of the surface (geometric
-/// mean). Without branches, so that the loop is executed in SIMD instructions.
-void FrameRenderer::find_levels(const LightSample& sample, const TileHits& hits, TileTexels& texels) const {
-  const float half_pixels_per_focal = 1.0F / static_cast<float>(camera_.fx);
-  const float bias = kLevelBias + kLevelDither[sample.number];
-  for (std::size_t at = 0; at < Tile::kPixels; ++at) {
-    const float x = sample.rays.x[at], y = sample.rays.y[at], z = hits.z[at];
-    const float distance = z * std::sqrt(x * x + y * y + 1.0F);
-    const float cosine = std::max(std::abs(texels.height[at]) / distance, 0.05F);
-    const float size = z * half_pixels_per_focal * texels.texels_per_m[at];
-    texels.level[at] = std::max(0.0F, approximate_log2(size) - 0.5F * approximate_log2(cosine) + bias);
-  }
-}
-
-void FrameRenderer::add_light(const Job& job, const LightSample& sample, const TileHits& hits,
-                              std::array<Float4, Tile::kPixels>& light) const {
-  TileTexels texels;
-  find_texels(job, sample, hits, texels);
-  find_levels(sample, hits, texels);
-  // All texels are requested from memory before the first one is used.
-  std::array<Texture::Cell, Tile::kPixels> cells;
-  for_each_pixel(sample.tile, [&](std::size_t at, int, int) {
-    if (hits.primitive[at] < 0) return;
-    if (texels.texture[at] == nullptr) {
-      const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
-      cells[at] =
-          corner_colors(world_.mesh.triangles[primitive - world_.quads.size()], hits.u[at], hits.v[at]);
-    } else {
-      cells[at] = texels.texture[at]->cell_at(texels.s[at], texels.t[at], texels.level[at]);
-    }
-    __builtin_prefetch(cells[at].upper + cells[at].column);
-    __builtin_prefetch(cells[at].lower + cells[at].column);
-  });
-  for_each_pixel(sample.tile, [&](std::size_t at, int, int) {
-    if (hits.primitive[at] < 0) return;
-    const Float4 root = cells[at].value();
-    light[at] += root * root * texels.light[at] * (1.0F / kLightSamples);
-  });
 }
 
 void FrameRenderer::record_geometry(const Job& job, const Tile& tile, const TileHits& hits,
                                     RenderedFrame& frame) const {
   for_each_pixel(tile, [&](std::size_t at, int row, int column) {
-    if (hits.primitive[at] < 0) return;
-    const auto primitive = static_cast<std::size_t>(hits.primitive[at]);
+    const std::int32_t surface = hits.surface[at];
+    if (surface < 0) return;
     const std::size_t pixel = pixel_at(row, column);
-    frame.depth_m[pixel] = hits.z[at];
-    if (hits.moving[at] == 0) return;
-    frame.object[pixel] = static_cast<std::uint16_t>(job.mover_frame->appearance[primitive].object);
-    frame.speed_m_per_s[pixel] = displacement_m(job.mover_frame->mesh, primitive) / job.exposure->span_s;
+    frame.depth_m[pixel] = 1.0F / hits.inverse_z[at];
+    if ((surface & TileHits::kMoving) == 0) return;
+    const auto triangle = static_cast<std::size_t>(surface & ~TileHits::kMoving);
+    const MoverFrame& movers = *job.visible.movers;
+    frame.object[pixel] = static_cast<std::uint16_t>(movers.appearance[triangle].object);
+    frame.speed_m_per_s[pixel] = displacement_m(movers.mesh, triangle) / job.exposure->span_s;
   });
 }
 

@@ -10,6 +10,7 @@
 #include "core/geometry/pose.h"
 #include "datasets/synthetic/render/ray_tracer.h"
 #include "datasets/synthetic/render/surface_tiles.h"
+#include "datasets/synthetic/render/tile_shading.h"
 #include "datasets/synthetic/render/world.h"
 
 namespace stillpoint::synth {
@@ -21,21 +22,6 @@ inline constexpr int kLightSamples = 4;
 
 /// Time of light sample `index` relative to mid-exposure, in units of the exposure time: -0.5 .. 0.5.
 [[nodiscard]] double sample_time_offset(int index);
-
-/// Label and material of one triangle of the moving mesh.
-struct MoverTriangle {
-  int object = 1;                     ///< instance number, from 1
-  int texture = 0;                    ///< in the world's textures
-  std::array<Eigen::Vector2f, 3> uv;  ///< texture coordinates of the corners
-  float texels_per_m = 500.0F;
-};
-
-/// All moving geometry of one frame.
-struct MoverFrame {
-  MovingMesh mesh;
-  std::vector<Eigen::Vector3f> normals;   ///< per vertex
-  std::vector<MoverTriangle> appearance;  ///< per triangle
-};
 
 /// Camera poses T_w_c during one frame. One entry: global shutter; otherwise one entry per image row.
 struct Exposure {
@@ -80,10 +66,8 @@ class FrameRenderer {
 
  private:
   struct Block;
-  struct Hit;
   struct Job;
   struct LightSample;
-  struct TileTexels;
   void see_surfaces(const Exposure& exposure, const MovingMesh* movers, RenderBuffers& buffers) const;
   template <class Function>
   void for_each_pixel(const Tile& tile, Function&& function) const;
@@ -94,11 +78,6 @@ class FrameRenderer {
   void find_surfaces(const Job& job, const LightSample& sample, TileHits& hits) const;
   [[nodiscard]] RayPacket aim(const Job& job, const Block& block, const LightSample& sample) const;
   static void store(const RayPacket& packet, const Block& block, TileHits& hits);
-  void find_texels(const Job& job, const LightSample& sample, const TileHits& hits, TileTexels& texels) const;
-  void find_triangle_texels(const Job& job, const Hit& hit, const TileHits& hits, TileTexels& texels) const;
-  void find_levels(const LightSample& sample, const TileHits& hits, TileTexels& texels) const;
-  void add_light(const Job& job, const LightSample& sample, const TileHits& hits,
-                 std::array<Float4, Tile::kPixels>& light) const;
   void record_geometry(const Job& job, const Tile& tile, const TileHits& hits, RenderedFrame& frame) const;
   [[nodiscard]] std::size_t pixel_at(int row, int column) const {
     return static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -54,68 +55,114 @@ float signed_area(const Polygon& polygon) {
   return area;
 }
 
-/// a x + b y + c in normalized image coordinates.
-struct Linear {
-  float a, b, c;
+/// @return smallest and largest value in a rectangle
+std::pair<float, float> range(const LinearForm& form, const Vector2f& low, const Vector2f& high) {
+  const float x_low = form.a * low.x(), x_high = form.a * high.x(), y_low = form.b * low.y(),
+              y_high = form.b * high.y();
+  return {std::min(x_low, x_high) + std::min(y_low, y_high) + form.c,
+          std::max(x_low, x_high) + std::max(y_low, y_high) + form.c};
+}
 
-  /// @return its smallest and largest value in the rectangle
-  [[nodiscard]] std::pair<float, float> range(const Vector2f& low, const Vector2f& high) const {
-    const float x_low = a * low.x(), x_high = a * high.x(), y_low = b * low.y(), y_high = b * high.y();
-    return {std::min(x_low, x_high) + std::min(y_low, y_high) + c,
-            std::max(x_low, x_high) + std::max(y_low, y_high) + c};
-  }
-};
-
-Linear edge_between(const Vector2f& from, const Vector2f& to, float orientation) {
+LinearForm edge_between(const Vector2f& from, const Vector2f& to, float orientation) {
   const Vector2f along = orientation * (to - from);
   return {-along.y(), along.x(), along.y() * from.x() - along.x() * from.y()};
 }
 
-/// See SeenSurface.
-SeenSurface seen_surface(const Vector3f& origin_c, const Vector3f& edge_u, const Vector3f& edge_v,
-                         std::int32_t number) {
-  const Vector3f cross = edge_u.cross(edge_v);
-  const Vector3f normal = cross.normalized();
-  const Vector3f dual_u = edge_v.cross(cross) / cross.squaredNorm();
-  const Vector3f dual_v = cross.cross(edge_u) / cross.squaredNorm();
-  return {.normal = normal,
-          .along_u = dual_u,
-          .along_v = dual_v,
-          .height = normal.dot(origin_c),
-          .u_0 = -dual_u.dot(origin_c),
-          .v_0 = -dual_v.dot(origin_c),
-          .seam_u = kSeam_m / edge_u.norm(),
-          .seam_v = kSeam_m / edge_v.norm(),
-          .number = number};
+LinearForm linear_form(const Vector3f& coefficients) {
+  return {coefficients.x(), coefficients.y(), coefficients.z()};
 }
 
-/// Tests some pixels of a row. Without branches, so that the loop is executed in SIMD instructions.
-template <bool kTriangle>
-void intersect(const SeenSurface& surface, std::size_t first, const TileRays& rays, TileHits& hits) {
-  const float low_u = -surface.seam_u, high_u = 1.0F + surface.seam_u;
-  const float low_v = -surface.seam_v, high_v = 1.0F + surface.seam_v;
-  const auto &n = surface.normal, &a_u = surface.along_u, &a_v = surface.along_v;
+/// See SeenSurface.
+template <std::size_t kCorners>
+SeenSurface seen_surface(const std::array<Vector3f, kCorners>& corners_c, std::int32_t surface) {
+  const Vector3f& origin = corners_c[0];
+  const Vector3f edge_u = corners_c[1] - origin, edge_v = corners_c[kCorners - 1] - origin;
+  const Vector3f cross = edge_u.cross(edge_v);
+  const Vector3f dual_u = edge_v.cross(cross) / cross.squaredNorm();
+  const Vector3f dual_v = cross.cross(edge_u) / cross.squaredNorm();
+  const Vector3f inverse_depth = cross / cross.dot(origin);
+  const Vector3f u = dual_u - dual_u.dot(origin) * inverse_depth;
+  const Vector3f v = dual_v - dual_v.dot(origin) * inverse_depth;
+  const float seam_u = kSeam_m / edge_u.norm(), seam_v = kSeam_m / edge_v.norm();
+  const Vector3f above_u = (1.0F + seam_u) * inverse_depth - u, above_v = (1.0F + seam_v) * inverse_depth - v;
+  return {.inverse_depth = linear_form(inverse_depth),
+          .u = linear_form(u),
+          .v = linear_form(v),
+          .inside = {linear_form(u + seam_u * inverse_depth), linear_form(v + seam_v * inverse_depth),
+                     linear_form(kCorners == 3 ? Vector3f(above_u - v) : above_u),
+                     linear_form(kCorners == 3 ? Vector3f(above_u - v) : above_v)},
+          .surface = surface};
+}
+
+/// A linear form along a row.
+struct AlongRow {
+  float slope, first;
+  AlongRow(const LinearForm& form, float y) : slope(form.a), first(form.b * y + form.c) {}
+  float operator()(float x) const { return slope * x + first; }
+};
+
+/// Eight pixels of a row.
+using Floats = float __attribute__((vector_size(32)));
+using Integers = std::int32_t __attribute__((vector_size(32)));
+
+template <class Vector, class T>
+Vector load(const T* from) {
+  Vector values;
+  std::memcpy(&values, from, sizeof values);
+  return values;
+}
+
+/// A linear form at eight columns of a row.
+struct AlongColumns {
+  Floats at_y_0, slope;
+  AlongColumns(const LinearForm& form, const Floats& x)
+      : at_y_0(form.a * x + form.c), slope(Floats{} + form.b) {}
+  Floats operator()(float y) const { return at_y_0 + slope * y; }
+};
+
+/// Rows of a tile, and the first of eight columns.
+struct Window {
+  int first_row, end_row, column;
+};
+
+/// Tests eight columns of a tile. What is linear in x is computed once for all rows.
+void test(const SeenSurface& surface, std::int32_t number, const Window& window, const TileRays& rays,
+          float* inverse_z, std::int32_t* seen) {
+  const auto x = load<Floats>(rays.x.data() + window.column);
+  const AlongColumns inverse_depth(surface.inverse_depth, x), side_0(surface.inside[0], x),
+      side_1(surface.inside[1], x), side_2(surface.inside[2], x), side_3(surface.inside[3], x);
+  for (int row = window.first_row; row < window.end_row; ++row) {
+    const int first = row * Tile::kColumns + window.column;
+    const float y = rays.y[static_cast<std::size_t>(first)];
+    const Floats w = inverse_depth(y);
+    const auto before = load<Floats>(inverse_z + first);
+    const Integers is_hit = (side_0(y) >= 0.0F) & (side_1(y) >= 0.0F) & (side_2(y) >= 0.0F) &
+                            (side_3(y) >= 0.0F) & (w * kSameDepth > before) & (w <= 1.0F / kNearest_m);
+    const Floats nearest = is_hit ? w : before;
+    const Integers shown = is_hit ? number : load<Integers>(seen + first);
+    std::memcpy(inverse_z + first, &nearest, sizeof nearest);
+    std::memcpy(seen + first, &shown, sizeof shown);
+  }
+}
+
+/// Records what some pixels of a row show, for those that show a surface.
+void record(const SeenSurface& surface, std::int32_t number, std::size_t first, const std::int32_t* seen,
+            const TileRays& rays, TileHits& hits) {
+  const AlongRow along_u(surface.u, rays.y[first]), along_v(surface.v, rays.y[first]);
   const float* const rays_x = rays.x.data() + first;
-  const float* const rays_y = rays.y.data() + first;
-  float* const hit_z = hits.z.data() + first;
-  float* const hit_u = hits.u.data() + first;
-  float* const hit_v = hits.v.data() + first;
-  std::int32_t* const hit_primitive = hits.primitive.data() + first;
-  std::int32_t* const hit_moving = hits.moving.data() + first;
+  const float* const inverse_z = hits.inverse_z.data() + first;
+  float *const hit_u = hits.u.data() + first, *const hit_v = hits.v.data() + first;
+  std::int32_t* const hit_surface = hits.surface.data() + first;
+  const std::int32_t shown = surface.surface;
+#pragma GCC unroll 1
 #pragma GCC ivdep
   for (int i = 0; i < kLanes; ++i) {
-    const float x = rays_x[i], y = rays_y[i];
-    const float z = surface.height / (n.x() * x + (n.y() * y + n.z()));
-    const float u = surface.u_0 + z * (a_u.x() * x + (a_u.y() * y + a_u.z()));
-    const float v = surface.v_0 + z * (a_v.x() * x + (a_v.y() * y + a_v.z()));
-    const bool inside = kTriangle ? (u >= low_u) & (v >= low_v) & (u + v <= high_u)
-                                  : (u >= low_u) & (v >= low_v) & (u <= high_u) & (v <= high_v);
-    const bool is_hit = inside & (z > 0.0F) & (z < hit_z[i] * kSameDepth);
-    hit_z[i] = is_hit ? z : hit_z[i];
-    hit_u[i] = is_hit ? u : hit_u[i];
-    hit_v[i] = is_hit ? v : hit_v[i];
-    hit_primitive[i] = is_hit ? surface.number : hit_primitive[i];
-    if constexpr (kTriangle) hit_moving[i] = is_hit ? 1 : hit_moving[i];
+    const float z = 1.0F / inverse_z[i];
+    const float u = along_u(rays_x[i]) * z, v = along_v(rays_x[i]) * z;
+    const bool is_shown = seen[i] == number;
+    hit_u[i] = is_shown ? u : hit_u[i];
+    hit_v[i] = is_shown ? v : hit_v[i];
+    hit_surface[i] = is_shown ? shown : hit_surface[i];
   }
 }
 
@@ -132,14 +179,13 @@ struct ToCamera {
 }  // namespace
 
 void TileHits::clear() {
-  z.fill(kFar_m);
-  primitive.fill(-1);
-  moving.fill(0);
+  inverse_z.fill(1.0F / kFar_m);
+  surface.fill(-1);
 }
 
 /// A surface in the image: pixels that contain it, and its edges.
 struct SurfaceTiles::Outline {
-  std::array<Linear, 5> edges{};  ///< positive inside
+  std::array<LinearForm, 5> edges{};  ///< positive inside
   std::size_t edge_count = 0;
   int left, right, top, bottom;
 
@@ -177,7 +223,6 @@ void SurfaceTiles::begin(const Camera& camera) {
 
 void SurfaceTiles::see_quads(std::span<const Quad> quads, const Camera& camera, const Pose& T_w_c) {
   begin(camera);
-  moving_ = false;
   covered_.assign(static_cast<std::size_t>(columns_ * rows_), 0.0F);
   const ToCamera to_camera(T_w_c);
   for (std::size_t i = 0; i < quads.size(); ++i) {
@@ -192,7 +237,6 @@ void SurfaceTiles::see_quads(std::span<const Quad> quads, const Camera& camera, 
 void SurfaceTiles::see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c,
                                  const SurfaceTiles& before) {
   begin(before.camera_);
-  moving_ = true;
   covered_ = before.covered_;
   const ToCamera to_camera(T_w_c);
   points_c_.resize(mesh.start.size());
@@ -200,13 +244,14 @@ void SurfaceTiles::see_triangles(const MovingMesh& mesh, float time, const Pose&
     points_c_[i] = to_camera(mesh.start[i] + time * (mesh.end[i] - mesh.start[i]));
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& [a, b, c] = mesh.triangles[i];
-    add(std::array{points_c_[a], points_c_[b], points_c_[c]}, static_cast<std::int32_t>(i));
+    add(std::array{points_c_[a], points_c_[b], points_c_[c]},
+        TileHits::kMoving | static_cast<std::int32_t>(i));
   }
   sort_entries();
 }
 
 template <std::size_t kCorners>
-void SurfaceTiles::add(const std::array<Vector3f, kCorners>& corners_c, std::int32_t number) {
+void SurfaceTiles::add(const std::array<Vector3f, kCorners>& corners_c, std::int32_t surface) {
   const auto beyond = [&](float x, float y, float z) {
     return std::ranges::all_of(corners_c, [&](const Vector3f& p) { return p.dot(Vector3f(x, y, z)) < 0.0F; });
   };
@@ -217,7 +262,7 @@ void SurfaceTiles::add(const std::array<Vector3f, kCorners>& corners_c, std::int
   const Vector3f edge_u = corners_c[1] - corners_c[0], edge_v = corners_c[kCorners - 1] - corners_c[0];
   const float area = edge_u.cross(edge_v).squaredNorm();
   if (!outline.is_visible() || area <= kFlat * edge_u.squaredNorm() * edge_v.squaredNorm()) return;
-  const SeenSurface seen = seen_surface(corners_c[0], edge_u, edge_v, number);
+  const SeenSurface seen = seen_surface(corners_c, surface);
   add_to_tiles(outline, seen);
   seen_.push_back(seen);
 }
@@ -225,9 +270,9 @@ void SurfaceTiles::add(const std::array<Vector3f, kCorners>& corners_c, std::int
 void SurfaceTiles::add_to_tiles(const Outline& outline, const SeenSurface& seen) {
   const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy);
   const auto cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
-  const bool edge_on = std::abs(seen.height) < kEdgeOn_m;  // the inverse depth is not known well
-  const Vector3f plane = seen.normal / seen.height;
-  const Linear inverse_depth{plane.x(), plane.y(), plane.z()};
+  const LinearForm& inverse_depth = seen.inverse_depth;
+  const float inverse_height = Vector3f(inverse_depth.a, inverse_depth.b, inverse_depth.c).norm();
+  const bool edge_on = !(inverse_height * kEdgeOn_m <= 1.0F);  // the inverse depth is not known well
   for (int row = outline.top / Tile::kRows; row <= outline.bottom / Tile::kRows; ++row) {
     for (int column = outline.left / Tile::kColumns; column <= outline.right / Tile::kColumns; ++column) {
       const int x = column * Tile::kColumns, y = row * Tile::kRows;
@@ -237,11 +282,11 @@ void SurfaceTiles::add_to_tiles(const Outline& outline, const SeenSurface& seen)
                           (static_cast<float>(y + Tile::kRows - 1) + kMargin_px - cy) / fy);
       bool covers = !edge_on, outside = false;
       for (std::size_t i = 0; i < outline.edge_count; ++i) {
-        const auto [smallest, largest] = outline.edges[i].range(low, high);
+        const auto [smallest, largest] = range(outline.edges[i], low, high);
         covers = covers && smallest > 0.0F;
         outside = outside || largest < 0.0F;
       }
-      const auto [farthest, nearest] = inverse_depth.range(low, high);
+      const auto [farthest, nearest] = range(inverse_depth, low, high);
       const auto tile = static_cast<std::uint32_t>(row * columns_ + column);
       if (outside || (!edge_on && nearest < covered_[tile])) continue;
       entries_.push_back(
@@ -270,18 +315,21 @@ void SurfaceTiles::sort_entries() {
 void SurfaceTiles::find(const Tile& tile, const TileRays& rays, TileHits& hits) const {
   const auto number =
       static_cast<std::size_t>(tile.row / Tile::kRows * columns_ + tile.column / Tile::kColumns);
+  alignas(64) std::array<std::int32_t, Tile::kPixels> seen;
+  seen.fill(-1);
   for (std::size_t i = first_[number]; i < first_[number + 1]; ++i) {
     const Entry& entry = sorted_[i];
-    const SeenSurface& surface = seen_[entry.seen];
-    for (int row = entry.first_row; row < entry.end_row; ++row) {
-      for (int column = entry.first_column / kLanes * kLanes; column < entry.end_column; column += kLanes) {
-        const auto first = static_cast<std::size_t>(row * Tile::kColumns + column);
-        if (moving_) {
-          intersect<true>(surface, first, rays, hits);
-        } else {
-          intersect<false>(surface, first, rays, hits);
-        }
-      }
+    for (int column = entry.first_column / kLanes * kLanes; column < entry.end_column; column += kLanes) {
+      test(seen_[entry.seen], static_cast<std::int32_t>(entry.seen), {entry.first_row, entry.end_row, column},
+           rays, hits.inverse_z.data(), seen.data());
+    }
+  }
+  for (std::size_t first = 0; first < Tile::kPixels; first += kLanes) {
+    std::int32_t recorded = -1;
+    for (std::size_t at = first; at < first + kLanes; ++at) {
+      if (seen[at] < 0 || seen[at] == recorded) continue;
+      recorded = seen[at];
+      record(seen_[static_cast<std::size_t>(recorded)], recorded, first, seen.data() + first, rays, hits);
     }
   }
 }

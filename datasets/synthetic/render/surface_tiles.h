@@ -30,28 +30,32 @@ struct TileRays {
 
 /// What the light samples in the pixels of a tile show, in row-major order.
 struct TileHits {
-  alignas(64) std::array<float, Tile::kPixels> z;     ///< depth along the optical axis [m]
-  alignas(64) std::array<float, Tile::kPixels> u, v;  ///< coordinates in the surface
-  /// -1: nothing; in the world, triangles of its mesh follow the quads.
-  alignas(64) std::array<std::int32_t, Tile::kPixels> primitive;
-  /// 1: the primitive belongs to the moving mesh, not to the world.
-  alignas(64) std::array<std::int32_t, Tile::kPixels> moving;
+  alignas(64) std::array<float, Tile::kPixels> inverse_z;  ///< of the depth along the optical axis [1/m]
+  alignas(64) std::array<float, Tile::kPixels> u, v;       ///< coordinates in the surface
+  static constexpr std::int32_t kMoving = 1 << 30;
+  /// -1: nothing; a quad of the world, after the quads a triangle of its mesh; kMoving + a triangle of the
+  /// moving mesh.
+  alignas(64) std::array<std::int32_t, Tile::kPixels> surface;
 
   void clear();
 };
 
-/// A parallelogram o + u e_u + v e_v, or the half of it with u + v <= 1, seen along (x, y, 1) in normalized
-/// image coordinates from p:
+/// a x + b y + c in normalized image coordinates.
+struct LinearForm {
+  float a = 0.0F, b = 0.0F, c = 0.0F;
+};
+
+/// A parallelogram o + u e_u + v e_v, or the half of it with u + v <= 1, seen along d = (x, y, 1) in
+/// normalized image coordinates from p:
 ///
-///   z = n . (o - p) / n . d,   u = a_u . (p - o) + z a_u . d,   v = a_v . (p - o) + z a_v . d
+///   1 / z = n . d / (n . (o - p)),   u / z = a_u . (p - o) / z + a_u . d,   v / z likewise
 ///
-/// n: unit normal; d: direction in the world; a_u, a_v: dual basis of the edges. n . d, a_u . d and a_v . d
-/// are linear in x and y.
+/// n: normal; a_u, a_v: dual basis of the edges. They are linear in x and y, and so are the distances from
+/// the edges, divided by z: the nearest surface is found without a division.
 struct SeenSurface {
-  Eigen::Vector3f normal, along_u, along_v;  ///< coefficients of x, y, 1 of n . d, a_u . d, a_v . d
-  float height, u_0, v_0;                    ///< n . (o - p), a_u . (p - o), a_v . (p - o)
-  float seam_u, seam_v;                      ///< how far u and v may lie outside
-  std::int32_t number;
+  LinearForm inverse_depth, u, v;    ///< 1 / z, u / z, v / z
+  std::array<LinearForm, 4> inside;  ///< not negative in the surface
+  std::int32_t surface;              ///< see TileHits
 };
 
 /// Its memory is used again from image to image.
@@ -80,7 +84,7 @@ class SurfaceTiles {
   struct Outline;
   void begin(const Camera& camera);
   template <std::size_t kCorners>
-  void add(const std::array<Eigen::Vector3f, kCorners>& corners_c, std::int32_t number);
+  void add(const std::array<Eigen::Vector3f, kCorners>& corners_c, std::int32_t surface);
   void add_to_tiles(const Outline& outline, const SeenSurface& seen);
   void sort_entries();
 
@@ -88,7 +92,6 @@ class SurfaceTiles {
   int columns_ = 0, rows_ = 0;
   float left_ = 0.0F, right_ = 0.0F, top_ = 0.0F,
         bottom_ = 0.0F;  ///< sides of the image, in normalized coordinates, outward
-  bool moving_ = false;  ///< triangles of a moving mesh
   std::vector<SeenSurface> seen_;
   std::vector<Entry> entries_, sorted_;  ///< `sorted_` by tile and number
   std::vector<float> covered_;           ///< per tile: inverse depth behind which everything is hidden [1/m]

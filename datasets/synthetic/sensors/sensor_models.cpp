@@ -94,6 +94,7 @@ class SmoothNoise {
             mix_bits(key + kLatticeOffset + static_cast<std::uint64_t>(row * 65536 + column))));
       }
     }
+    for (int column = 0; column < cell_; ++column) fractions_.push_back(fraction(column));
     for (int row = 0; row < cell_; ++row) {
       for (int column = 0; column < cell_; ++column) {
         const float x = fraction(column), y = fraction(row);
@@ -103,15 +104,22 @@ class SmoothNoise {
     }
   }
 
-  [[nodiscard]] float at(int row, int column) const {
-    const int row_in_cell = row % cell_, column_in_cell = column % cell_;
-    const float x = fraction(column_in_cell), y = fraction(row_in_cell);
-    const float* const top = nodes_.data() + std::ptrdiff_t{row / cell_} * columns_ + column / cell_;
-    const float* const bottom = top + columns_;
-    const float upper = top[0] * (1.0F - x) + top[1] * x;
-    const float lower = bottom[0] * (1.0F - x) + bottom[1] * x;
-    return (upper * (1.0F - y) + lower * y) /
-           deviations_[static_cast<std::size_t>(row_in_cell * cell_ + column_in_cell)];
+  /// The noise of a row of pixels.
+  void row(int row, std::span<float> out) const {
+    const int row_in_cell = row % cell_;
+    const float y = fraction(row_in_cell);
+    const float* top = nodes_.data() + std::ptrdiff_t{row / cell_} * columns_;
+    const float* const deviations = deviations_.data() + std::ptrdiff_t{row_in_cell} * cell_;
+    for (std::size_t first = 0; first < out.size(); first += static_cast<std::size_t>(cell_), ++top) {
+      const float* const bottom = top + columns_;
+      const std::size_t count = std::min(out.size() - first, static_cast<std::size_t>(cell_));
+      for (std::size_t i = 0; i < count; ++i) {
+        const float x = fractions_[i];
+        const float upper = top[0] * (1.0F - x) + top[1] * x;
+        const float lower = bottom[0] * (1.0F - x) + bottom[1] * x;
+        out[first + i] = (upper * (1.0F - y) + lower * y) / deviations[i];
+      }
+    }
   }
 
  private:
@@ -122,22 +130,24 @@ class SmoothNoise {
   int cell_;
   int columns_;
   std::vector<float> nodes_;       ///< row by row
+  std::vector<float> fractions_;   ///< of a cell, at its pixels
   std::vector<float> deviations_;  ///< of the interpolated value, at the pixels of a cell
 };
 
 bool differs(float a, float b) { return std::abs(a - b) > kJump * std::min(a, b); }
 
-/// Whether a 4-neighbor has a different depth.
-bool at_edge(const TrueDepth& image, int row, int column) {
-  const int width = image.width, height = image.height;
-  const auto depth = [&image](int y, int x) {
-    return image.depth_m[static_cast<std::size_t>(std::ptrdiff_t{y} * image.width + x)];
-  };
-  const float here = depth(row, column);
-  return (column > 0 && differs(depth(row, column - 1), here)) ||
-         (column + 1 < width && differs(depth(row, column + 1), here)) ||
-         (row > 0 && differs(depth(row - 1, column), here)) ||
-         (row + 1 < height && differs(depth(row + 1, column), here));
+/// Marks the pixels of a row of which a 4-neighbor has a different depth.
+void mark_edges(const TrueDepth& image, int row, std::span<std::uint8_t> marks) {
+  const std::size_t width = marks.size();
+  const float* const here = image.depth_m.data() + static_cast<std::size_t>(row) * width;
+  const float* const above = row > 0 ? here - width : here;
+  const float* const below = row + 1 < image.height ? here + width : here;
+  for (std::size_t i = 0; i < width; ++i)
+    marks[i] = static_cast<std::uint8_t>(differs(above[i], here[i]) | differs(below[i], here[i]));
+  for (std::size_t i = 1; i < width; ++i) {
+    const auto differ = static_cast<std::uint8_t>(differs(here[i - 1], here[i]));
+    marks[i - 1] |= differ, marks[i] |= differ;
+  }
 }
 
 /// `std::round` of a value below 2^52, in instructions that process several values.
@@ -200,20 +210,23 @@ cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor, std::u
   const auto columns = static_cast<std::size_t>(width);
   DepthRow simulated(columns);
   std::vector<double> noise(columns);
-  std::size_t pixel = 0;
+  std::vector<float> correlated(columns);
+  std::vector<std::uint8_t> edges(columns);
   for (int row = 0; row < height; ++row) {
-    const std::span<const float> row_m = depth_m.subspan(pixel, columns);
-    for (int column = 0; column < width; ++column, ++pixel) {
-      const float white = normal_from_bits(mix_bits(noise_key + pixel));
-      noise[static_cast<std::size_t>(column)] =
-          static_cast<double>(white_weight * white + smooth_weight * smooth.at(row, column));
-      if (!(sensor.edge_dropout > 0.0) || !at_edge(depth, row, column)) continue;
-      const double chance =
-          static_cast<double>(mix_bits(noise_key + kDropoutOffset + pixel) >> 11) * 0x1.0p-53;
-      if (chance < sensor.edge_dropout)
-        noise[static_cast<std::size_t>(column)] = std::numeric_limits<double>::quiet_NaN();
+    const std::size_t first = static_cast<std::size_t>(row) * columns;
+    smooth.row(row, correlated);
+    for (std::size_t i = 0; i < columns; ++i) {
+      const float white = normal_from_bits(mix_bits(noise_key + first + i));
+      noise[i] = static_cast<double>(white_weight * white + smooth_weight * correlated[i]);
     }
-    simulated.simulate(row_m, noise, sensor, image.ptr<std::uint16_t>(row));
+    if (sensor.edge_dropout > 0.0) mark_edges(depth, row, edges);
+    for (std::size_t i = 0; sensor.edge_dropout > 0.0 && i < columns; ++i) {
+      if (edges[i] == 0) continue;
+      const double chance =
+          static_cast<double>(mix_bits(noise_key + kDropoutOffset + first + i) >> 11) * 0x1.0p-53;
+      if (chance < sensor.edge_dropout) noise[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    simulated.simulate(depth_m.subspan(first, columns), noise, sensor, image.ptr<std::uint16_t>(row));
   }
   return image;
 }
