@@ -125,15 +125,24 @@ struct Window {
   int first_row, end_row, column;
 };
 
+/// The search for the nearest surfaces in a tile.
+struct Search {
+  const TileRays& rays;
+  TileHits& hits;
+  alignas(
+      64) std::array<std::int32_t, Tile::kPixels> seen;  ///< number of the nearest surface so far; -1: none
+};
+
 /// Tests eight columns of a tile. What is linear in x is computed once for all rows.
-void test(const SeenSurface& surface, std::int32_t number, const Window& window, const TileRays& rays,
-          float* inverse_z, std::int32_t* seen) {
-  const auto x = load<Floats>(rays.x.data() + window.column);
+void test(const SeenSurface& surface, std::int32_t number, const Window& window, Search& search) {
+  const auto x = load<Floats>(search.rays.x.data() + window.column);
+  float* const inverse_z = search.hits.inverse_z.data();
+  std::int32_t* const seen = search.seen.data();
   const AlongColumns inverse_depth(surface.inverse_depth, x), side_0(surface.inside[0], x),
       side_1(surface.inside[1], x), side_2(surface.inside[2], x), side_3(surface.inside[3], x);
   for (int row = window.first_row; row < window.end_row; ++row) {
     const int first = row * Tile::kColumns + window.column;
-    const float y = rays.y[static_cast<std::size_t>(first)];
+    const float y = search.rays.y[static_cast<std::size_t>(first)];
     const Floats w = inverse_depth(y);
     const auto before = load<Floats>(inverse_z + first);
     const Integers is_hit = (side_0(y) >= 0.0F) & (side_1(y) >= 0.0F) & (side_2(y) >= 0.0F) &
@@ -146,9 +155,11 @@ void test(const SeenSurface& surface, std::int32_t number, const Window& window,
 }
 
 /// Records what some pixels of a row show, for those that show a surface.
-void record(const SeenSurface& surface, std::int32_t number, std::size_t first, const std::int32_t* seen,
-            const TileRays& rays, TileHits& hits) {
+void record(const SeenSurface& surface, std::int32_t number, std::size_t first, Search& search) {
+  const TileRays& rays = search.rays;
+  TileHits& hits = search.hits;
   const AlongRow along_u(surface.u, rays.y[first]), along_v(surface.v, rays.y[first]);
+  const std::int32_t* const seen = search.seen.data() + first;
   const float* const rays_x = rays.x.data() + first;
   const float* const inverse_z = hits.inverse_z.data() + first;
   float *const hit_u = hits.u.data() + first, *const hit_v = hits.v.data() + first;
@@ -315,21 +326,22 @@ void SurfaceTiles::sort_entries() {
 void SurfaceTiles::find(const Tile& tile, const TileRays& rays, TileHits& hits) const {
   const auto number =
       static_cast<std::size_t>(tile.row / Tile::kRows * columns_ + tile.column / Tile::kColumns);
-  alignas(64) std::array<std::int32_t, Tile::kPixels> seen;
-  seen.fill(-1);
+  Search search{.rays = rays, .hits = hits, .seen = {}};
+  search.seen.fill(-1);
   for (std::size_t i = first_[number]; i < first_[number + 1]; ++i) {
     const Entry& entry = sorted_[i];
     for (int column = entry.first_column / kLanes * kLanes; column < entry.end_column; column += kLanes) {
       test(seen_[entry.seen], static_cast<std::int32_t>(entry.seen), {entry.first_row, entry.end_row, column},
-           rays, hits.inverse_z.data(), seen.data());
+           search);
     }
   }
   for (std::size_t first = 0; first < Tile::kPixels; first += kLanes) {
     std::int32_t recorded = -1;
     for (std::size_t at = first; at < first + kLanes; ++at) {
-      if (seen[at] < 0 || seen[at] == recorded) continue;
-      recorded = seen[at];
-      record(seen_[static_cast<std::size_t>(recorded)], recorded, first, seen.data() + first, rays, hits);
+      const std::int32_t seen = search.seen[at];
+      if (seen < 0 || seen == recorded) continue;
+      recorded = seen;
+      record(seen_[static_cast<std::size_t>(recorded)], recorded, first, search);
     }
   }
 }
