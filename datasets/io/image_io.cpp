@@ -43,11 +43,13 @@ std::uint32_t big_endian(std::string_view bytes) {
 }
 
 /// The library takes pointers to bytes that may change, and does not change them.
-std::uint8_t* bytes_of(std::string_view bytes) {
+std::uint8_t* library_bytes(std::string_view bytes) {
   return const_cast<std::uint8_t*>(reinterpret_cast<const std::uint8_t*>(bytes.data()));
 }
 
-std::uint32_t crc32_of(std::string_view bytes) { return crc32_gzip_refl(0, bytes_of(bytes), bytes.size()); }
+std::uint32_t chunk_checksum(std::string_view bytes) {
+  return crc32_gzip_refl(0, library_bytes(bytes), bytes.size());
+}
 
 /// Parts of a PNG file that are supported.
 struct PngFile {
@@ -90,7 +92,8 @@ std::optional<PngFile> read_chunks(std::string_view bytes) {
     if (length > bytes.size() - kChunkOverhead) return std::nullopt;
     const std::string_view type = bytes.substr(4, 4);
     const std::string_view data = bytes.substr(8, length);
-    if (crc32_of({type.data(), 4 + length}) != big_endian(bytes.substr(8 + length))) return std::nullopt;
+    if (chunk_checksum({type.data(), 4 + length}) != big_endian(bytes.substr(8 + length)))
+      return std::nullopt;
     if (!file) {
       if (type != "IHDR") return std::nullopt;
       file = read_header(data);
@@ -115,7 +118,7 @@ std::unique_ptr<std::uint8_t[]> decompress(const PngFile& file) {
   const auto state = std::make_unique_for_overwrite<inflate_state>();
   isal_inflate_init(state.get());
   state->crc_flag = ISAL_ZLIB;  // verifies the checksum
-  state->next_in = bytes_of(file.compressed);
+  state->next_in = library_bytes(file.compressed);
   state->avail_in = static_cast<std::uint32_t>(file.compressed.size());
   state->next_out = rows.get();
   state->avail_out = static_cast<std::uint32_t>(bytes);
