@@ -27,7 +27,8 @@ void prepare_process() {
 
 /// Freed images are used again instead of returned to the system, which would clear their pages for each
 /// frame. In a virtual machine that was two thirds of the time of a run with the detector of OpenCV: `run
-/// market --config baselines/vins_mono` 26.9 s of user and system time, 10.0 s with this.
+/// market --config baselines/vins_mono` 26.9 s of user and system time, 10.0 s with these thresholds, on a
+/// busy machine.
 void keep_freed_buffers() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc accepts
   mallopt(M_TRIM_THRESHOLD, 64 << 20);

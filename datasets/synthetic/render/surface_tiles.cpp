@@ -129,8 +129,8 @@ struct Window {
 struct Search {
   const TileRays& rays;
   TileHits& hits;
-  alignas(
-      64) std::array<std::int32_t, Tile::kPixels> seen;  ///< number of the nearest surface so far; -1: none
+  /// Number of the nearest surface so far; -1: none.
+  alignas(64) std::array<std::int32_t, Tile::kPixels> seen;
 };
 
 /// Tests eight columns of a tile. What is linear in x is computed once for all rows.
