@@ -97,6 +97,24 @@ Similarity aligned_by_best(std::span<const MatchedPose> reference) {
   return {Pose{mean, mean_gt - mean * mean_est}};
 }
 
+/// Means of the deviations claimed for the poses that were aligned: those of the alignment itself, at most.
+struct AlignmentClaim {
+  double sigma_m = 0.0;
+  double sigma_rad = 0.0;
+};
+
+AlignmentClaim claim_of_alignment(const std::vector<Assessed>& frames) {
+  AlignmentClaim sum;
+  int count = 0;
+  for (const Assessed& frame : frames) {
+    if (!frame.located() || !frame.first_world()) continue;
+    sum.sigma_m += frame.pose->sigma_m;
+    sum.sigma_rad += frame.pose->sigma_rad;
+    ++count;
+  }
+  return {sum.sigma_m / std::max(count, 1), sum.sigma_rad / std::max(count, 1)};
+}
+
 /// Sets errors and labels. @return false if the alignment is not determined
 bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin) {
   const bool always_faulty = fault_begin && !frames.empty() && frames.front().pose->t >= *fault_begin;
@@ -123,11 +141,14 @@ bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin)
     drift_m = std::max(drift_m, frame.error_m);
     drift_rad = std::max(drift_rad, frame.error_rad);
   }
+  const AlignmentClaim aligned = always_faulty ? claim_of_alignment(frames) : AlignmentClaim{};
   for (Assessed& frame : frames) {
     const double excess_m = frame.error_m - drift_m, excess_rad = frame.error_rad - drift_rad;
+    const double sigma_m = std::hypot(frame.pose->sigma_m, aligned.sigma_m);
+    const double sigma_rad = std::hypot(frame.pose->sigma_rad, aligned.sigma_rad);
     frame.small = excess_m <= kWrong_m && excess_rad <= kWrong_rad;
-    frame.wrong = excess_m > std::max(kWrong_m, kSigmas * frame.pose->sigma_m) ||
-                  excess_rad > std::max(kWrong_rad, kSigmas * frame.pose->sigma_rad);
+    frame.wrong = excess_m > std::max(kWrong_m, kSigmas * sigma_m) ||
+                  excess_rad > std::max(kWrong_rad, kSigmas * sigma_rad);
   }
   return true;
 }

@@ -12,7 +12,9 @@
 /// rotation, because positions within a small space do not determine one, and e_0 = theta_0 = 0), the excess
 /// is max(0, e_k - e_0), likewise for the rotation. A pose is wrong if its excess is beyond both 5 cm and 3
 /// s_k, or beyond both 2 degrees and 3 r_k. A pose of a later segment is in another world: it is neither
-/// wrong nor right.
+/// wrong nor right. Claims are relative to the first pose, and an alignment of all poses moves it: if the
+/// fault begins with the first frame, the mean of the s_k of the aligned poses, which is at least the
+/// deviation of the alignment, is added to s_k in quadrature, likewise to r_k.
 ///
 ///   false confidence      fraction of all frames that are located (tracking, degraded, relocated) and wrong
 ///   missed availability   fraction of all frames after the first located one that are lost although the

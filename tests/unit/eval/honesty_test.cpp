@@ -81,6 +81,21 @@ TEST_F(HonestyTest, ARotatedWorldIsNotWrongWithAnImperfectionFromTheFirstFrameOn
   EXPECT_EQ(honesty(gt_, claims_, always)->false_confidence, 0.0);
 }
 
+TEST_F(HonestyTest, AWrongScaleThatIsClaimedIsNotWrongAnywhereOnThePath) {
+  // The scale is off by 5 %, and claimed to be known to 5 % or to 0.2 %. The claims are relative to the first
+  // pose, which the alignment of all poses moves by more than 5 cm.
+  const Eigen::Vector3d origin = gt_.poses.front().T_w_f.p;
+  for (ClaimedPose& claim : claims_) claim.T_w_c.p = origin + 1.05 * (claim.T_w_c.p - origin);
+  const std::vector<TimeSpan> always{{gt_.poses.front().t, after(gt_.poses.back().t, 1.0)}};
+  const auto false_confidence = [&](double scale_sigma) {
+    for (std::size_t i = 0; i < kFrames; ++i)
+      claims_[i].sigma_m = scale_sigma * (gt_.poses[i].T_w_f.p - origin).norm();
+    return honesty(gt_, claims_, always)->false_confidence;
+  };
+  EXPECT_EQ(false_confidence(0.05), 0.0);
+  EXPECT_GT(false_confidence(0.002), 0.5);
+}
+
 TEST_F(HonestyTest, APoseOfALaterSegmentIsNoRecovery) {
   claim(kFault, kFault + 10, PoseClaim::kLost);
   displace(kFault, kFrames, 3.0);
