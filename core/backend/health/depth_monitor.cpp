@@ -7,6 +7,14 @@
 #include "core/config/monitor_config.h"
 
 namespace stillpoint {
+namespace {
+
+/// Before a jump of the scale: an inertial scale that differs from that of the depth pulls the landmarks away
+/// from it within the first second, but not from one frame to the next.
+constexpr double kMinAgreement_s = 1.0;
+
+}  // namespace
+
 std::optional<double> DepthScale::of_newest(const Window& window) {
   ratios_.clear();
   const Pose T_c_w = window.T_w_c(window.newest()).inverse();
@@ -33,14 +41,34 @@ bool DepthMonitor::knows_scale(const std::optional<StateCovariance>& covariance,
          (covariance && kMonitor.depth_scale.known_sigmas * std::sqrt(covariance->depth_scale) < max_error_);
 }
 
+/// Whether a scale that has agreed for some time, by the unit of the rig, does so no more.
+bool DepthMonitor::has_jumped(double error, Timestamp t) {
+  const bool differs = error > max_error_;
+  const bool jumped = differs && agrees_since_ && seconds_between(*agrees_since_, t) >= kMinAgreement_s;
+  if (error > kMonitor.depth_scale.agreeing_part * max_error_) {
+    agrees_since_.reset();
+  } else if (!agrees_since_) {
+    agrees_since_ = t;
+  }
+  return jumped;
+}
+
 void DepthMonitor::update(const std::optional<StateCovariance>& covariance, Window& window) {
-  if (max_error_ <= 0.0 || !knows_scale(covariance, window)) return;
+  if (max_error_ <= 0.0) return;
+  const bool is_known = knows_scale(covariance, window);
   const std::optional<double> scale = scale_.of_newest(window);
   const Timestamp t = window.frames.back().state.t;
-  if (scale && std::abs(*scale - 1.0) <= kMonitor.depth_scale.agreeing_part * max_error_)
-    rejected_since_.reset();
-  if (scale && std::abs(*scale - 1.0) > max_error_ && !rejected_since_) rejected_since_ = t;
+  if (scale) {
+    const double error = std::abs(*scale - 1.0);
+    const bool jumped = has_jumped(error, t);
+    if (error <= kMonitor.depth_scale.agreeing_part * max_error_) rejected_since_.reset();
+    if (error > max_error_ && !rejected_since_ && (is_known || jumped)) {
+      rejected_since_ = t;
+      rejects_jump_ = jumped;
+    }
+  }
   if (!rejected_since_ || seconds_between(*rejected_since_, t) > kMonitor.depth_scale.max_rejection_s) return;
+  if (!is_known && !rejects_jump_) return;
   for (Landmark& landmark : window.landmarks) {
     if (landmark.last() == window.newest()) landmark.observations.back().depth = 0.0;
   }

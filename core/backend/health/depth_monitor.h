@@ -24,27 +24,35 @@ class DepthScale {
 };
 
 /// Rejects measured depth whose scale differs from that of known landmarks, for at most 10 s: if the
-/// contradiction persists, the landmarks are wrong.
+/// contradiction persists, the landmarks are wrong. A scale that agreed for 1 s and differs from one frame to
+/// the next is that of a sensor which has changed, whatever its true one is.
 class DepthMonitor {
  public:
   /// @param max_error largest accepted error of the scale; 0 = no check
   explicit DepthMonitor(double max_error) : max_error_(max_error) {}
 
   /// Removes the depths measured in the newest frame if their scale contradicts the landmarks.
-  /// @param covariance of the newest state, if it is known: an estimated scale must be certain. While the
-  ///   scale of the rig is compared with the data, the comparison needs the depth until it is certain.
+  /// @param covariance of the newest state, if it is known: an estimated scale must be certain, unless the
+  ///   measured one jumps. While the scale of the rig is compared with the data, the comparison needs the
+  ///   depth until it is certain.
   void update(const std::optional<StateCovariance>& covariance, Window& window);
 
   /// After a restart with another depth scale.
-  void reset() { rejected_since_.reset(); }
+  void reset() {
+    rejected_since_.reset();
+    agrees_since_.reset();
+  }
 
  private:
   [[nodiscard]] bool knows_scale(const std::optional<StateCovariance>& covariance,
                                  const Window& window) const;
+  [[nodiscard]] bool has_jumped(double error, Timestamp t);
 
   double max_error_;
   DepthScale scale_;
+  std::optional<Timestamp> agrees_since_;
   std::optional<Timestamp> rejected_since_;
+  bool rejects_jump_ = false;  ///< since `rejected_since_`
 };
 
 }  // namespace stillpoint

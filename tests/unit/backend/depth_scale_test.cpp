@@ -28,5 +28,33 @@ TEST(DepthScale, IsRelativeToTheEstimatedOne) {
   EXPECT_NEAR(DepthScale().of_newest(window).value(), 1.0, 0.01);
 }
 
+/// Whether the newest depths are rejected, measured `seconds` after the start with a scale of the rig that is
+/// not known.
+bool rejects(DepthMonitor& monitor, double factor, double seconds) {
+  Window window = window_with_depth_factor(factor);
+  window.agrees_with_rig.depth_scale = true;
+  window.frames.back().state.t = after(Timestamp{}, seconds);
+  monitor.update(std::nullopt, window);
+  return !DepthScale().of_newest(window);
+}
+
+TEST(DepthMonitor, RejectsAJumpOfAScaleThatIsNotKnown) {
+  DepthMonitor monitor(0.04);
+  EXPECT_FALSE(rejects(monitor, 1.0, 0.0));
+  EXPECT_FALSE(rejects(monitor, 1.0, 1.0));
+  EXPECT_TRUE(rejects(monitor, 0.9, 1.1));
+  EXPECT_TRUE(rejects(monitor, 0.9, 4.0));
+  EXPECT_FALSE(rejects(monitor, 1.0, 4.1));
+}
+
+/// The inertial scale pulls the landmarks away from a scale that was wrong from the first frame on.
+TEST(DepthMonitor, UsesAScaleThatIsNotKnownAndMoves) {
+  DepthMonitor monitor(0.04);
+  EXPECT_FALSE(rejects(monitor, 0.9, 0.0));
+  EXPECT_FALSE(rejects(monitor, 1.0, 0.1));
+  EXPECT_FALSE(rejects(monitor, 0.97, 1.5));
+  EXPECT_FALSE(rejects(monitor, 0.94, 1.6));
+}
+
 }  // namespace
 }  // namespace stillpoint
