@@ -48,8 +48,9 @@ class Calibration {
   ///
   ///   d^2 / (C (1 + (t_n / t)^2) + s_a^2)
   ///
-  /// is compared with the quantile of one degree of freedom; the term with t_n = 1.5 s doubts the inertial
-  /// noise of the start. Below 4 the scale is that of the rig again: the prior of the window holds for any.
+  /// is compared with 6.63, the 99 % quantile of one degree of freedom: s_a and the term with t_n = 1.5 s,
+  /// which doubts the inertial noise of the start, contain what a true scale seems to be off by. Below 4 the
+  /// scale is that of the rig again: the prior of the window holds for any.
   /// The lens likewise, with what a calibration leaves in place of s_a, and from the start. Its center and
   /// the extrinsics are compared after the rotations were aligned, since before it is not known which value
   /// is wrong; extrinsics that were found to contradict the rig stay variable.

@@ -146,6 +146,16 @@ TEST(Calibration, ADepthScaleWithinTheErrorOfAnAccelerometerIsThatOfTheRig) {
   EXPECT_TRUE(compared.window.agrees_with_rig.depth_scale);
 }
 
+TEST(Calibration, ADepthScaleIsAnotherOneFromTheNinetyNinePercentQuantileOn) {
+  for (const bool other : {false, true}) {
+    Compared compared;
+    compared.compare(0.0, 0.01, 0.0);
+    // Variances: 0.01^2 (1 + (1.5 / 15)^2) + 0.006^2 = 0.0117^2. Quantile: 2.58^2.
+    compared.compare(other ? 0.0308 : 0.0296, 0.01, 15.0);
+    EXPECT_EQ(compared.window.agrees_with_rig.depth_scale, !other);
+  }
+}
+
 TEST(Calibration, ADepthScaleThatComesCloseToTheRigIsThatOfTheRigAgain) {
   Compared compared;
   compared.compare(0.0, 0.1, 0.0);
