@@ -23,7 +23,7 @@ constexpr int kAlignedDegreesOfFreedom = 4;  // rotation and time offset
 constexpr double kNoiseKnown_s = 1.5;
 /// Squared difference, in variances, above which a scale is another one: 99 % of one degree of freedom. With
 /// 99.99 % a scale 5 % off was kept for 8 s beside a noisy IMU (walking_xyz, fault rig:seed=2: 0.0094 m, with
-/// 99 % 0.0066 m); V1_03, room1 and room3 with an exact rig are the same in all digits.
+/// 99 % 0.0058 m); V1_03, room1 and room3 with an exact rig are the same in all digits.
 constexpr double kOtherScale = 6.63;
 /// Squared difference, in variances, below which a scale that differed is again that of the rig.
 constexpr double kLikeRig = 4.0;
