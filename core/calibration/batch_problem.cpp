@@ -3,14 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <set>
 #include <utility>
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 
-#include <ceres/crs_matrix.h>
 #include <ceres/solver.h>
 
 #include "core/calibration/depth_patch.h"
@@ -20,12 +16,12 @@ namespace {
 
 constexpr double kLargestResidual = 4.0;  // of an inlier, in standard deviations
 // Priors on the first state of a section, and after a gap of the inertial data.
-constexpr double kSpeedSigma = 5.0;         // [m/s]
-constexpr double kGyroBiasSigma = 0.05;     // [rad/s]
-constexpr double kAccelBiasSigma = 0.3;     // [m/s^2]
-constexpr double kLeastInformation = 1e-6;  // of each number: of points that almost nothing determines
-constexpr double kLeastTruth_m = 5e-4;      // deviations of a ground truth, with the next
+constexpr double kSpeedSigma = 5.0;      // [m/s]
+constexpr double kGyroBiasSigma = 0.05;  // [rad/s]
+constexpr double kAccelBiasSigma = 0.3;  // [m/s^2]
+constexpr double kLeastTruth_m = 5e-4;   // deviations of a ground truth, with the next
 constexpr double kLeastTruth_rad = 5e-4;
+constexpr double kLeastEdge_px = 0.5;      // deviation of an edge
 constexpr double kRateHalfWidth_s = 0.01;  // of the mean rate at an exposure
 
 int index(SharedValue value) { return static_cast<int>(value); }
@@ -52,8 +48,66 @@ BatchProblem::BatchProblem(const CalibrationInput& input, const CalibrationPrior
   for (BatchLandmark& landmark : state_.landmarks) {
     if (landmark.is_usable()) add_landmark(landmark);
   }
+  if (options_.edge_radius_px > 0.0) {
+    for (int i = 0; i < static_cast<int>(state_.keyframes.size()); ++i) add_edges(i);
+  }
   add_priors();
   if (!state_.T_w_g.empty()) add_truth();
+}
+
+/// Between the neighboring keyframes of the section; zero without one.
+Eigen::Vector3d BatchProblem::mean_velocity_c(int keyframe, const Eigen::Vector3d& p_w) const {
+  const int last = static_cast<int>(state_.keyframes.size()) - 1;
+  const auto at = [&](int i) -> const BatchKeyframe& {
+    return state_.keyframes[static_cast<std::size_t>(i)];
+  };
+  const auto in_section = [&](int i) {
+    return i >= 0 && i <= last && at(i).section == at(keyframe).section ? i : keyframe;
+  };
+  const int before = in_section(keyframe - 1), next = in_section(keyframe + 1);
+  if (before == next) return Eigen::Vector3d::Zero();
+  const Pose T_b_c = pose_of(state_.shared.T_b_c);
+  const Eigen::Vector3d from = (pose_of(at(before).pose) * T_b_c).inverse() * p_w;
+  const Eigen::Vector3d to = (pose_of(at(next).pose) * T_b_c).inverse() * p_w;
+  return (to - from) / seconds_between(at(before).t, at(next).t);
+}
+
+/// Edges of the depth image with the nearest ones of the color image.
+void BatchProblem::add_edges(int index) {
+  SharedValues& shared = state_.shared;
+  const BatchKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(index)];
+  const CameraModel model = input_.stated.rig.camera.model;
+  const Pose T_c_d = pose_of(shared.T_c_d);
+  const Pose T_w_c = pose_of(keyframe.pose) * pose_of(shared.T_b_c);
+  const auto& depth = shared.depth_camera;
+  int rows = cluster_ends_.empty() ? 0 : cluster_ends_.back();
+  for (const DepthEdge& edge : keyframe.edges) {
+    const auto p_c_at = [&](const Eigen::Vector2d& u) -> Eigen::Vector3d {
+      return T_c_d * (edge.depth_m *
+                      Eigen::Vector3d((u.x() - depth[2]) / depth[0], (u.y() - depth[3]) / depth[1], 1.0));
+    };
+    const Eigen::Vector3d p_c = p_c_at(edge.pixel);
+    const Eigen::Vector3d velocity_c = mean_velocity_c(index, T_w_c * p_c);
+    const Eigen::Vector3d shift = -shared.depth_delay_s * velocity_c;
+    const Eigen::Vector2d pixel = projected_pixel(model, shared.camera.data(), p_c + shift);
+    const Eigen::Vector2d beside =
+        projected_pixel(model, shared.camera.data(), p_c_at(edge.pixel + edge.normal) + shift);
+    const Eigen::Vector2d normal = (beside - pixel).normalized();
+    const std::optional<double> distance = image_edge(keyframe.gray, pixel, normal, options_.edge_radius_px);
+    if (!distance) continue;
+    edge_factors_.emplace_back(model,
+                               EdgeFactor::Measurement{.pixel = edge.pixel,
+                                                       .depth_m = edge.depth_m,
+                                                       .velocity_c = velocity_c,
+                                                       .edge = pixel + *distance * normal,
+                                                       .normal = normal},
+                               state_.edge_sigma_px);
+    cluster_blocks_.push_back(problem_.AddResidualBlock(&edge_factors_.back(), &huber_, shared.T_c_d.data(),
+                                                        shared.depth_camera.data(), shared.camera.data(),
+                                                        &shared.depth_delay_s));
+    ++rows;
+  }
+  cluster_ends_.push_back(rows);
 }
 
 void BatchProblem::add_truth() {
@@ -180,25 +234,10 @@ void BatchProblem::add_shared() {
 
 /// Across the ray by the velocity of the pixel, along it by the neighboring poses.
 Eigen::Vector3d BatchProblem::velocity_c(const BatchObservation& seen, const Eigen::Vector3d& p_w) const {
-  const auto section_of = [&](int keyframe) {
-    return state_.keyframes[static_cast<std::size_t>(keyframe)].section;
-  };
-  const int last = static_cast<int>(state_.keyframes.size()) - 1;
-  const int section = section_of(seen.keyframe);
-  const int before =
-      seen.keyframe > 0 && section_of(seen.keyframe - 1) == section ? seen.keyframe - 1 : seen.keyframe;
-  const int next =
-      seen.keyframe < last && section_of(seen.keyframe + 1) == section ? seen.keyframe + 1 : seen.keyframe;
-  if (before == next) return Eigen::Vector3d::Zero();
   const SharedValues& shared = state_.shared;
-  const Pose T_b_c = pose_of(shared.T_b_c);
-  const auto p_c = [&](int keyframe) -> Eigen::Vector3d {
-    return (pose_of(state_.keyframes[static_cast<std::size_t>(keyframe)].pose) * T_b_c).inverse() * p_w;
-  };
-  const double duration_s = seconds_between(state_.keyframes[static_cast<std::size_t>(before)].t,
-                                            state_.keyframes[static_cast<std::size_t>(next)].t);
-  const Eigen::Vector3d p = p_c(seen.keyframe);
-  const double rate = (p_c(next).z() - p_c(before).z()) / duration_s;
+  const Pose& T_w_b = pose_of(state_.keyframes[static_cast<std::size_t>(seen.keyframe)].pose);
+  const Eigen::Vector3d p = (T_w_b * pose_of(shared.T_b_c)).inverse() * p_w;
+  const double rate = mean_velocity_c(seen.keyframe, p_w).z();
   const Eigen::Vector2d plane_rate(seen.feature.velocity_px.x() / shared.camera[0],
                                    seen.feature.velocity_px.y() / shared.camera[1]);
   return {p.z() * plane_rate.x() + p.x() / p.z() * rate, p.z() * plane_rate.y() + p.y() / p.z() * rate, rate};
@@ -236,7 +275,7 @@ void BatchProblem::add_landmark(BatchLandmark& landmark) {
   ceres::LossFunction* loss = &huber_;
   if (options_.is_first) loss = &cauchy_;
   const double height = input_.stated.rig.camera.height;
-  int rows = landmark_ends_.empty() ? 0 : landmark_ends_.back();
+  int rows = cluster_ends_.empty() ? 0 : cluster_ends_.back();
   ++landmark_count_;
   problem_.AddParameterBlock(landmark.p_w.data(), 3);
   for (BatchObservation& observation : landmark.observations) {
@@ -250,16 +289,16 @@ void BatchProblem::add_landmark(BatchLandmark& landmark) {
         state_.pixel_sigma_px);
     Seen seen{&observation, &landmark.p_w, &pixel_factors_.back(), nullptr};
     if (observation.pixel_is_inlier) {
-      landmark_blocks_.push_back(problem_.AddResidualBlock(seen.pixel, loss, pose, shared.T_b_c.data(),
-                                                           shared.camera.data(), &shared.readout_s,
-                                                           landmark.p_w.data()));
+      cluster_blocks_.push_back(problem_.AddResidualBlock(seen.pixel, loss, pose, shared.T_b_c.data(),
+                                                          shared.camera.data(), &shared.readout_s,
+                                                          landmark.p_w.data()));
       rows += 2;
     }
     if (const auto measurement = depth_of(observation, landmark.p_w)) {
       depth_factors_.emplace_back(*measurement, state_.inverse_depth_sigma);
       seen.depth = &depth_factors_.back();
       if (observation.pixel_is_inlier) {
-        landmark_blocks_.push_back(problem_.AddResidualBlock(
+        cluster_blocks_.push_back(problem_.AddResidualBlock(
             seen.depth, loss, pose, shared.T_b_c.data(), shared.T_c_d.data(), shared.depth_camera.data(),
             shared.depth.data(), landmark.p_w.data(), &shared.readout_s, &shared.depth_delay_s));
         ++rows;
@@ -267,7 +306,7 @@ void BatchProblem::add_landmark(BatchLandmark& landmark) {
     }
     seen_.push_back(seen);
   }
-  landmark_ends_.push_back(rows);
+  cluster_ends_.push_back(rows);
 }
 
 void BatchProblem::add_linear_prior(double* block, const Eigen::VectorXd& mean, const Eigen::MatrixXd& A) {
@@ -410,7 +449,22 @@ RoundStatistics BatchProblem::update_deviations() {
   if (!inertial_.empty()) update_imu_noise();
   statistics.truth_poses = truth_factors_.size();
   if (!truth_factors_.empty()) update_truth_noise();
+  statistics.edges = edge_factors_.size();
+  if (!edge_factors_.empty()) update_edge_noise();
   return statistics;
+}
+
+void BatchProblem::update_edge_noise() {
+  const SharedValues& shared = state_.shared;
+  const std::array<const double*, 4> blocks = {shared.T_c_d.data(), shared.depth_camera.data(),
+                                               shared.camera.data(), &shared.depth_delay_s};
+  std::vector<double> distances;
+  for (const EdgeFactor& factor : edge_factors_) {
+    double r = 0.0;
+    static_cast<void>(factor.Evaluate(blocks.data(), &r, nullptr));
+    distances.push_back(std::abs(r) * state_.edge_sigma_px);
+  }
+  state_.edge_sigma_px = std::max(kLeastEdge_px, rms_of(distances));
 }
 
 void BatchProblem::update_truth_noise() {
@@ -464,94 +518,6 @@ void BatchProblem::update_imu_noise() {
   }
   state_.imu_noise.gyro = std::max(1.0, state_.imu_noise.gyro * rms_of(gyro));
   state_.imu_noise.accel = std::max(1.0, state_.imu_noise.accel * rms_of(accel));
-}
-
-namespace {
-
-/// Weighted residuals and their Jacobian; the rows up to the last end are those of landmarks.
-struct Linearization {
-  ceres::CRSMatrix J;
-  std::vector<double> r;
-  std::vector<int> landmark_ends;  ///< number of rows up to the last one of each landmark
-};
-
-/// The variances of the numbers at some columns, see calibrate.h; nullopt if the information is singular.
-std::optional<Eigen::VectorXd> variances(const Linearization& at, const std::vector<int>& columns) {
-  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
-  const ceres::CRSMatrix& J = at.J;
-  const Eigen::Map<const RowMajor> jacobian(J.num_rows, J.num_cols, static_cast<int>(J.values.size()),
-                                            J.rows.data(), J.cols.data(), J.values.data());
-  Eigen::SparseMatrix<double> information = RowMajor(jacobian.transpose()) * RowMajor(jacobian);
-  for (int i = 0; i < information.cols(); ++i) information.coeffRef(i, i) += kLeastInformation;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(information);
-  if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0.0)) return std::nullopt;
-  const Eigen::Map<const Eigen::VectorXd> r(at.r.data(), static_cast<Eigen::Index>(at.r.size()));
-  Eigen::VectorXd result(static_cast<int>(columns.size()));
-  for (int i = 0; i < result.size(); ++i) {
-    const int column = columns[static_cast<std::size_t>(i)];
-    const Eigen::VectorXd solution = solver.solve(Eigen::VectorXd::Unit(information.cols(), column));
-    const Eigen::VectorXd gain = jacobian * solution;
-    result[i] = 0.0;
-    int begin = 0;
-    for (const int end : at.landmark_ends) {
-      const double change = gain.segment(begin, end - begin).dot(r.segment(begin, end - begin));
-      result[i] += change * change;
-      begin = end;
-    }
-    result[i] += gain.tail(gain.size() - begin).squaredNorm();
-  }
-  if (!result.allFinite() || !(result.array() > 0.0).all()) return std::nullopt;
-  return result;
-}
-
-}  // namespace
-
-std::optional<SharedVector> BatchProblem::deviations() {
-  SharedValues& shared = state_.shared;
-  const std::array<std::pair<double*, SharedValue>, 10> shared_blocks = {
-      {{shared.camera.data(), SharedValue::kFx},
-       {&shared.readout_s, SharedValue::kReadout},
-       {shared.depth.data(), SharedValue::kDepthScale},
-       {shared.depth_camera.data(), SharedValue::kDepthFx},
-       {shared.T_c_d.data(), SharedValue::kDepthPose},
-       {shared.T_b_c.data(), SharedValue::kExtrinsics},
-       {&shared.time_offset_s, SharedValue::kTimeOffset},
-       {&shared.depth_delay_s, SharedValue::kDepthDelay},
-       {shared.T_f_b.data(), SharedValue::kTruthPose},
-       {&shared.truth_delay_s, SharedValue::kTruthDelay}}};
-  ceres::Problem::EvaluateOptions options;
-  options.residual_blocks = landmark_blocks_;
-  std::vector<ceres::ResidualBlockId> all;
-  problem_.GetResidualBlocks(&all);
-  const std::set<ceres::ResidualBlockId> of_landmarks(landmark_blocks_.begin(), landmark_blocks_.end());
-  std::ranges::copy_if(all, std::back_inserter(options.residual_blocks),
-                       [&](ceres::ResidualBlockId id) { return !of_landmarks.contains(id); });
-  problem_.GetParameterBlocks(&options.parameter_blocks);
-  std::erase_if(options.parameter_blocks,
-                [this](const double* block) { return problem_.IsParameterBlockConstant(block); });
-  std::vector<int> columns;
-  std::vector<int> values;  // shared value of each column
-  int column = 0;
-  for (const double* block : options.parameter_blocks) {
-    const auto found = std::ranges::find(shared_blocks, block, [](const auto& entry) { return entry.first; });
-    const int size = problem_.ParameterBlockTangentSize(block);
-    for (int i = 0, value = 0; found != shared_blocks.end() && i < size; ++value) {
-      // Constant numbers of a block have no column; of a pose, all are variable.
-      if (!is_variable(static_cast<SharedValue>(index(found->second) + value))) continue;
-      columns.push_back(column + i++);
-      values.push_back(index(found->second) + value);
-    }
-    column += size;
-  }
-  SharedVector result = SharedVector::Zero();
-  if (columns.empty()) return result;
-  Linearization at{.J = {}, .r = {}, .landmark_ends = landmark_ends_};
-  if (!problem_.Evaluate(options, nullptr, &at.r, nullptr, &at.J)) return std::nullopt;
-  const std::optional<Eigen::VectorXd> diagonal = variances(at, columns);
-  if (!diagonal) return std::nullopt;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    result[values[i]] = std::sqrt((*diagonal)[static_cast<Eigen::Index>(i)]);
-  return result;
 }
 
 }  // namespace stillpoint

@@ -53,6 +53,7 @@ struct RoundOptions {
   SharedFlags is_variable{};  ///< poses: all three numbers of position, or of rotation, alike
   bool is_first = false;      ///< deviations are not known yet
   bool depth_is_registered = true;
+  double edge_radius_px = 0.0;  ///< within which edges of depth and color images are matched; 0 = not used
   int max_iterations = 20;
   std::function<bool(int iteration, double cost)> on_iteration = {};  ///< false = stop; may be empty
 };
@@ -62,7 +63,7 @@ struct RoundStatistics {
   double pixel_rms_px = 0.0;       ///< of inliers, corrected for the number of estimated values
   double inverse_depth_rms = 0.0;  ///< likewise [1/m]; zero without depth
   double cost = 0.0;
-  std::size_t landmarks = 0, observations = 0, depths = 0, inertial_factors = 0, truth_poses = 0;
+  std::size_t landmarks = 0, observations = 0, depths = 0, inertial_factors = 0, truth_poses = 0, edges = 0;
   std::vector<ImageResidual> residuals;  ///< of inliers
 };
 
@@ -101,6 +102,7 @@ class BatchProblem {
   void add_inertial(ImuBuffer& samples, int first);
   void add_state_prior(int keyframe);
   void add_truth();
+  void add_edges(int keyframe);
   void add_priors();
   void hold(double* block, int size, std::span<const int> constant);
   void add_pose_block(double* block, SharedValue first);
@@ -113,7 +115,9 @@ class BatchProblem {
   [[nodiscard]] std::array<const double*, 8> depth_blocks(const Seen& seen) const;
   [[nodiscard]] Eigen::Vector3d velocity_c(const BatchObservation& seen, const Eigen::Vector3d& p_w) const;
   void update_imu_noise();
+  [[nodiscard]] Eigen::Vector3d mean_velocity_c(int keyframe, const Eigen::Vector3d& p_w) const;
   void update_truth_noise();
+  void update_edge_noise();
 
   const CalibrationInput& input_;
   const CalibrationPriors& priors_;
@@ -131,12 +135,14 @@ class BatchProblem {
   std::deque<LinearPriorFactor> linear_priors_;
   std::deque<PosePrior> pose_priors_;
   std::deque<TruthFactor> truth_factors_;
+  std::deque<EdgeFactor> edge_factors_;
   std::vector<int> truth_keyframes_;
   std::vector<Seen> seen_;
   std::size_t landmark_count_ = 0;
-  /// Residual blocks of all landmarks, and the number of residuals up to the last one of each landmark.
-  std::vector<ceres::ResidualBlockId> landmark_blocks_;
-  std::vector<int> landmark_ends_;
+  /// Residual blocks of all clusters (landmarks, edges of a keyframe), and the number of residuals up to the
+  /// last one of each cluster.
+  std::vector<ceres::ResidualBlockId> cluster_blocks_;
+  std::vector<int> cluster_ends_;
   ceres::Problem problem_;
 };
 

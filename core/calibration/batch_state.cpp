@@ -167,7 +167,10 @@ BatchState initial_state(const CalibrationInput& input, double begin, double end
                                  .section = number,
                                  .pose = values_of(keyframe.T_w_c * input.stated.rig.T_b_c.inverse()),
                                  .speed_bias = speed_bias_of(keyframe.state),
-                                 .depth = keyframe.depth});
+                                 .depth = keyframe.depth,
+                                 .gray = keyframe.gray});
+      if (!input.depth_is_registered && !keyframe.gray.empty())
+        state.keyframes.back().edges = depth_edges(keyframe.depth, input.stated.rig.depth_units_per_m);
     }
     state.gravity_w.emplace_back(input.gravity * section.gravity_w);
   }

@@ -9,6 +9,7 @@
 
 #include "core/calibration/calibrate.h"
 #include "core/calibration/calibration_factors.h"
+#include "core/calibration/depth_edges.h"
 
 namespace stillpoint {
 
@@ -54,7 +55,8 @@ struct BatchKeyframe {
   int section = 0;
   PoseValues pose{};
   SpeedBiasValues speed_bias{};
-  cv::Mat depth;
+  cv::Mat depth, gray;
+  std::vector<DepthEdge> edges;  ///< of depth images that are not registered
 };
 
 struct BatchState {
@@ -64,6 +66,7 @@ struct BatchState {
   SharedValues shared;
   double pixel_sigma_px = 1.0;
   double inverse_depth_sigma = 0.01;
+  double edge_sigma_px = 2.0;
   ImuNoiseFactors imu_noise;
   std::vector<PoseValues> T_w_g;  ///< world of the ground truth, per section; empty without one
   double truth_sigma_m = 0.005, truth_sigma_rad = 0.01;

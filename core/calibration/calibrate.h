@@ -4,12 +4,13 @@
 /// The minimum over keyframe poses, landmarks, velocities, biases, gravity and the shared parameters of the
 /// rig of
 ///
-///   sum |r_pixel|^2 + sum |r_depth|^2 + sum |r_imu|^2 + sum |r_prior|^2
+///   sum |r_pixel|^2 + sum |r_depth|^2 + sum |r_edge|^2 + sum |r_imu|^2 + sum |r_prior|^2
 ///
 /// with the residuals of calibration_factors.h and ImuFactor, robust losses, and one prior per shared
 /// parameter around its stated value. Each section of the recording has a world of its own, whose first pose
-/// is fixed. Without inertial data the metric scale is that of the depth sensor: its scale is then not
-/// observed and stays as stated.
+/// is fixed. Edges are used if depth images are not registered: those of depth images with the nearest ones
+/// of the color images, within a distance that decreases to 4 px over the rounds. Without inertial data the
+/// metric scale is that of the depth sensor: its scale is then not observed and stays as stated.
 ///
 /// Rounds: solve; estimate the deviation of pixels, of inverse depths and of the inertial data from their
 /// residuals, corrected for the number of estimated values; leave out observations beyond four deviations;
@@ -19,7 +20,8 @@
 /// Standard deviations: with the Jacobian J of all weighted residuals r, x = (J^T J)^-1 e_p is the gain of
 /// the parameter p. Residuals of a landmark l are correlated, as tracking errors last for many frames and
 /// keyframes are close; those of different landmarks are taken as independent, as is all other data (o). The
-/// variance is that of estimation with clusters (Liang and Zeger 1986), here with landmarks as clusters:
+/// variance is that of estimation with clusters (Liang and Zeger 1986), here with landmarks, and the
+/// edges of a keyframe, as clusters l:
 ///
 ///   sigma_p^2 = sum_l (r_l^T J_l x)^2 + |J_o x|^2
 ///

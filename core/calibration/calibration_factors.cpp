@@ -94,37 +94,85 @@ DistortedPoint kannala_brandt(const double* k, const Eigen::Vector2d& p) {
   return d;
 }
 
+/// Pixel of a point in the camera frame, and its derivatives.
+struct ProjectedPoint {
+  Eigen::Vector2d pixel;
+  Eigen::Matrix<double, 2, 3> J_point;
+  Eigen::Matrix<double, 2, kCameraValues> J_camera;
+
+  ProjectedPoint(CameraModel model, const double* camera, const Eigen::Vector3d& p_c) {
+    const bool in_front = p_c.z() > kNearestPoint_m;
+    const double inverse_z = 1.0 / (in_front ? p_c.z() : kNearestPoint_m);
+    const Eigen::Vector2d plane = inverse_z * p_c.head<2>();
+    const DistortedPoint d = model == CameraModel::kKannalaBrandt ? kannala_brandt(camera + 4, plane)
+                                                                  : radial_tangential(camera + 4, plane);
+    const Eigen::Vector2d focal(camera[0], camera[1]);
+    pixel = focal.cwiseProduct(d.m) + Eigen::Vector2d(camera[2], camera[3]);
+    Eigen::Matrix<double, 2, 3> J_plane;
+    J_plane << inverse_z, 0.0, in_front ? -inverse_z * plane.x() : 0.0,  //
+        0.0, inverse_z, in_front ? -inverse_z * plane.y() : 0.0;
+    J_point = focal.asDiagonal() * d.J_plane * J_plane;
+    J_camera.leftCols<4>() << d.m.x(), 0.0, 1.0, 0.0, 0.0, d.m.y(), 0.0, 1.0;
+    J_camera.rightCols<8>() = focal.asDiagonal() * d.J_coefficients;
+  }
+};
+
 }  // namespace
+
+Eigen::Vector2d projected_pixel(CameraModel model, const double* camera, const Eigen::Vector3d& p_c) {
+  return ProjectedPoint(model, camera, p_c).pixel;
+}
 
 bool PixelFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
   const PointInCamera point(x[0], x[1], x[4]);
-  const double* const camera = x[2];
-  const bool in_front = point.p_c.z() > kNearestPoint_m;
-  const double inverse_z = 1.0 / (in_front ? point.p_c.z() : kNearestPoint_m);
-  const Eigen::Vector2d plane = inverse_z * point.p_c.head<2>();
-  const DistortedPoint d = model_ == CameraModel::kKannalaBrandt ? kannala_brandt(camera + 4, plane)
-                                                                 : radial_tangential(camera + 4, plane);
-  const Eigen::Vector2d focal(camera[0], camera[1]);
+  const ProjectedPoint projected(model_, x[2], point.p_c);
   const Eigen::Vector2d shift = measurement_.row_fraction * measurement_.velocity_px;
-  Eigen::Map<Eigen::Vector2d>{residuals} =
-      weight_ * (focal.cwiseProduct(d.m) + Eigen::Vector2d(camera[2], camera[3]) - measurement_.pixel +
-                 x[3][0] * shift);
+  Eigen::Map<Eigen::Vector2d>{residuals} = weight_ * (projected.pixel - measurement_.pixel + x[3][0] * shift);
   if (jacobians == nullptr) return true;
-  Eigen::Matrix<double, 2, 3> J_plane;
-  J_plane << inverse_z, 0.0, in_front ? -inverse_z * plane.x() : 0.0,  //
-      0.0, inverse_z, in_front ? -inverse_z * plane.y() : 0.0;
-  const Eigen::Matrix<double, 2, 3> J = weight_ * focal.asDiagonal() * d.J_plane * J_plane;
+  const Eigen::Matrix<double, 2, 3> J = weight_ * projected.J_point;
   write_by_pose<2>(jacobians[0], J * point.J_pose());
   write_by_pose<2>(jacobians[1], J * point.J_extrinsics());
   if (jacobians[2] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, 2, kCameraValues, Eigen::RowMajor>> J_camera(jacobians[2]);
-    J_camera.leftCols<4>() << d.m.x(), 0.0, 1.0, 0.0, 0.0, d.m.y(), 0.0, 1.0;
-    J_camera.rightCols<8>() = focal.asDiagonal() * d.J_coefficients;
-    J_camera *= weight_;
+    Eigen::Map<Eigen::Matrix<double, 2, kCameraValues, Eigen::RowMajor>>{jacobians[2]} =
+        weight_ * projected.J_camera;
   }
   if (jacobians[3] != nullptr) Eigen::Map<Eigen::Vector2d>{jacobians[3]} = weight_ * shift;
   if (jacobians[4] != nullptr)
     Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>>{jacobians[4]} = J * point.J_point();
+  return true;
+}
+
+Eigen::Vector3d EdgeFactor::point_in_color(const double* T_c_d, const double* depth_camera,
+                                           double delay_s) const {
+  const Eigen::Vector2d& u = measurement_.pixel;
+  const Eigen::Vector3d ray((u.x() - depth_camera[2]) / depth_camera[0],
+                            (u.y() - depth_camera[3]) / depth_camera[1], 1.0);
+  return pose_of(T_c_d) * (measurement_.depth_m * ray) - delay_s * measurement_.velocity_c;
+}
+
+bool EdgeFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const double* const depth_camera = x[1];
+  const Eigen::Vector3d p_c = point_in_color(x[0], depth_camera, x[3][0]);
+  const ProjectedPoint projected(model_, x[2], p_c);
+  const Eigen::RowVector2d normal = weight_ * measurement_.normal.transpose();
+  residuals[0] = normal.dot(projected.pixel - measurement_.edge);
+  if (jacobians == nullptr) return true;
+  const Eigen::RowVector3d J = normal * projected.J_point;
+  const Pose T_c_d = pose_of(x[0]);
+  const Eigen::Vector3d p_d = T_c_d.inverse() * (p_c + x[3][0] * measurement_.velocity_c);
+  const Eigen::RowVector3d J_d = J * T_c_d.R();
+  Eigen::Matrix<double, 1, 6> J_depth_pose;
+  J_depth_pose << J, -J_d * skew(p_d);
+  write_by_pose<1>(jacobians[0], J_depth_pose);
+  if (jacobians[1] != nullptr) {
+    const Eigen::RowVector2d by_pixel(J_d[0] * measurement_.depth_m / depth_camera[0],
+                                      J_d[1] * measurement_.depth_m / depth_camera[1]);
+    Eigen::Map<Eigen::RowVector4d>{jacobians[1]} = -Eigen::RowVector4d(
+        by_pixel[0] * p_d.x() / p_d.z(), by_pixel[1] * p_d.y() / p_d.z(), by_pixel[0], by_pixel[1]);
+  }
+  if (jacobians[2] != nullptr)
+    Eigen::Map<Eigen::Matrix<double, 1, kCameraValues>>{jacobians[2]} = normal * projected.J_camera;
+  if (jacobians[3] != nullptr) jacobians[3][0] = -J.dot(measurement_.velocity_c);
   return true;
 }
 

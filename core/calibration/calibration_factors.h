@@ -76,6 +76,41 @@ class DepthFactor final : public ceres::SizedCostFunction<1, 7, 7, 7, 4, 2, 3, 1
   double weight_;
 };
 
+/// An edge of the depth image: the near side, of depth z, ends at the pixel u_d. It is projected to the color
+/// image, and compared with an edge there, along the normal n of both, pixel u_e:
+///
+///   r = n . (project(T_c_d p_d - t_d v_c) - u_e) / sigma,   p_d = z ((u_d - c_d) / f_d, 1)
+///
+/// Parameter blocks: T_c_d, `depth_camera`, `camera`, t_d [s].
+class EdgeFactor final : public ceres::SizedCostFunction<1, 7, 4, kCameraValues, 1> {
+ public:
+  struct Measurement {
+    Eigen::Vector2d pixel;                                 ///< u_d [px]
+    double depth_m = 0.0;                                  ///< z
+    Eigen::Vector3d velocity_c = Eigen::Vector3d::Zero();  ///< v_c [m/s]
+    Eigen::Vector2d edge = Eigen::Vector2d::Zero();        ///< u_e [px]
+    Eigen::Vector2d normal = Eigen::Vector2d::UnitX();     ///< n [1]
+  };
+
+  /// @param sigma_px standard deviation of the distance
+  EdgeFactor(CameraModel model, const Measurement& measurement, double sigma_px)
+      : model_(model), measurement_(measurement), weight_(1.0 / sigma_px) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  [[nodiscard]] Eigen::Vector3d point_in_color(const double* T_c_d, const double* depth_camera,
+                                               double delay_s) const;
+
+  CameraModel model_;
+  Measurement measurement_;
+  double weight_;
+};
+
+/// Pixel of a point in the camera frame.
+/// @param camera as the parameter block
+[[nodiscard]] Eigen::Vector2d projected_pixel(CameraModel model, const double* camera,
+                                              const Eigen::Vector3d& p_c);
+
 /// r = A (x - x_0). Ceres' NormalPrior would allocate matrices that this project frees in another way.
 class LinearPriorFactor final : public ceres::CostFunction {
  public:

@@ -30,8 +30,9 @@ struct CalibrationFeature {
 struct CalibrationKeyframe {
   NavState state;  ///< as the odometry estimated it; the initial value of the batch, with the next
   Pose T_w_c;
-  std::int64_t frame = 0;                    ///< id
-  cv::Mat depth;                             ///< CV_16UC1 or empty
+  std::int64_t frame = 0;  ///< id
+  cv::Mat depth;           ///< CV_16UC1 or empty
+  cv::Mat gray;            ///< CV_8UC1; needed for edges of depth images that are not registered, else empty
   std::vector<CalibrationFeature> features;  ///< static ones, by ascending track
 };
 

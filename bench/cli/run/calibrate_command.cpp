@@ -119,8 +119,11 @@ void load_raw_depth(const CalibrateArguments& arguments, const std::string& sequ
   const std::unique_ptr<datasets::SensorStream> raw = open_stream(arguments, sequence, true);
   if (!raw) return;
   for (CalibrationSection& section : input.sections) {
-    for (CalibrationKeyframe& keyframe : section.keyframes)
-      keyframe.depth = raw->load_frame(static_cast<std::size_t>(keyframe.frame)).depth;
+    for (CalibrationKeyframe& keyframe : section.keyframes) {
+      const Frame frame = raw->load_frame(static_cast<std::size_t>(keyframe.frame));
+      keyframe.depth = frame.depth;
+      keyframe.gray = frame.gray;
+    }
   }
 }
 
