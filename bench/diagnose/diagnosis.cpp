@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -213,6 +214,7 @@ class Diagnoser {
     }
     if (!baseline) {
       leave_out("the search for causes besides those above");
+      list_others(std::move(rest_));
       return false;
     }
     diagnosis_.corrected = baseline->error;
@@ -279,16 +281,20 @@ class Diagnoser {
       kept_.push_back(*best->correction);
       diagnosis_.corrected *= *best->error_ratio;
       diagnosis_.causes.push_back(std::move(*best));
+      found.erase(best);
+      rest_ = std::move(found);
       return true;
     }
-    for (Cause& cause : found) {
-      if (has_effect(cause)) {
-        diagnosis_.causes.push_back(std::move(cause));
-      } else if (!cause.needs_effect) {
-        diagnosis_.others.push_back(std::move(cause));
-      }
-    }
+    const auto others = std::stable_partition(found.begin(), found.end(), has_effect);
+    std::move(found.begin(), others, std::back_inserter(diagnosis_.causes));
+    found.erase(found.begin(), others);
+    list_others(std::move(found));
     return false;
+  }
+
+  void list_others(std::vector<Cause> causes) {
+    std::erase_if(causes, [](const Cause& cause) { return cause.needs_effect; });
+    std::ranges::move(causes, std::back_inserter(diagnosis_.others));
   }
 
   const datasets::SensorStream& stream_;
@@ -297,6 +303,7 @@ class Diagnoser {
   TrialRequest request_;
   Diagnosis diagnosis_;
   std::vector<Correction> kept_;
+  std::vector<Cause> rest_;          ///< candidates of the last round besides the one that was kept
   std::vector<double> differences_;  ///< of the pairs of runs of all trials
   bool spent_ = false;               ///< the budget, before all candidates were measured
   double trials_s_ = 0.0;            ///< time of all trials

@@ -376,10 +376,32 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
   return causes;
 }
 
+namespace {
+
+/// Median of the rates that the gyroscope measures beside those between images, by axis [rad/s].
+Eigen::Vector3d gyro_bias(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
+  const std::vector<RatePair> pairs =
+      rate_pairs(RateIntegral(info.imu), survey.rates(), info.rig.time_offset_s);
+  const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3 && !pairs.empty(); ++axis) {
+    std::vector<double> differences;
+    for (const RatePair& pair : pairs) differences.push_back((pair.a - R_b_c * pair.b)[axis]);
+    const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+    std::ranges::nth_element(differences, middle);
+    bias[axis] = *middle;
+  }
+  return bias;
+}
+
+}  // namespace
+
 std::vector<Cause> start_causes(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
   constexpr double kRest_s = 1.0, kSettled_s = 2.0;
   constexpr double kLeastSpeed_mps = 0.05, kLeastRate_radps = 0.05;  // of hands that hold a camera still
-  constexpr double kClearEffect = 0.7;  // errors in 2 of 8 s that are 2.3 times those of the others
+  constexpr double kLargeBias_radps = 0.1;   // EuRoC has 0.08, phones and cameras 0.02 at most
+  constexpr double kBiasSigma_radps = 0.01;  // of the difference of both rates
+  constexpr double kClearEffect = 0.7;       // errors in 2 of 8 s that are 2.3 times those of the others
   if (info.imu.empty() || survey.frames.empty()) return {};
   Cause cause{.id = "standing_start",
               .name = "standing start missing",
@@ -403,6 +425,12 @@ std::vector<Cause> start_causes(const datasets::SequenceInfo& info, const Record
     return {};
   cause.evidence = fmt::format("the camera moves at {:.2f} m/s and {:.2f} rad/s in the first second",
                                path_m / seconds, angle_rad / seconds);
+  if (const double bias = gyro_bias(info, survey).norm(); bias > kLargeBias_radps) {
+    cause.evidence += fmt::format(", and the gyroscope has a bias of {:.2f} rad/s", bias);
+    cause.basis = CauseBasis::kCompared;
+    cause.strength = bias / kBiasSigma_radps;
+    cause.needs_effect = false;
+  }
   return {cause};
 }
 

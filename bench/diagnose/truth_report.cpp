@@ -179,24 +179,38 @@ Cause truth_cause(const std::string& id, const std::string& name, const std::str
   return {.id = id, .name = name, .evidence = evidence, .remedy = remedy, .strength = 20.0};
 }
 
-/// The lag of the truth behind the camera, by the sensor that tells it better.
-std::optional<LagFit> truth_lag(const TruthReport& report, const datasets::SequenceInfo& info) {
-  if (!report.by_gyro || (report.by_images && report.by_images->sigma_s < report.by_gyro->sigma_s))
-    return report.by_images;
-  LagFit lag = *report.by_gyro;
-  lag.lag_s += info.rig.time_offset_s;
-  return lag;
+/// The lag of the truth behind the camera, and the sensor that tells it.
+struct TruthLag {
+  LagFit fit;
+  const char* sensor;
+};
+
+/// By the sensor that tells it better; by the images if both contradict each other, as the clock of the
+/// gyroscope is then wrong.
+std::optional<TruthLag> truth_lag(const TruthReport& report, const datasets::SequenceInfo& info) {
+  std::optional<TruthLag> by_images, by_gyro;
+  if (report.by_images) by_images = TruthLag{*report.by_images, "images"};
+  if (report.by_gyro) {
+    by_gyro = TruthLag{*report.by_gyro, "gyroscope"};
+    by_gyro->fit.lag_s += info.rig.time_offset_s;
+  }
+  if (!by_images || !by_gyro) return by_images ? by_images : by_gyro;
+  const LagFit &images = by_images->fit, &gyro = by_gyro->fit;
+  const bool contradict =
+      std::abs(images.lag_s - gyro.lag_s) > kClear * std::hypot(images.sigma_s, gyro.sigma_s);
+  return contradict || images.sigma_s < gyro.sigma_s ? by_images : by_gyro;
 }
 
 std::vector<Cause> lag_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
-  const std::optional<LagFit> lag = truth_lag(report, info);
-  if (!lag || std::abs(lag->lag_s) < kLeastTruthLag_s || std::abs(lag->lag_s) < kClear * lag->sigma_s)
+  const std::optional<TruthLag> found = truth_lag(report, info);
+  const LagFit* const lag = found ? &found->fit : nullptr;
+  if (lag == nullptr || std::abs(lag->lag_s) < kLeastTruthLag_s ||
+      std::abs(lag->lag_s) < kClear * lag->sigma_s)
     return {};
-  Cause cause =
-      truth_cause("truth_late", "ground truth late",
-                  fmt::format("its rotation is {:.1f} +- {:.1f} ms behind that of the {}", 1e3 * lag->lag_s,
-                              1e3 * lag->sigma_s, report.by_gyro ? "gyroscope" : "images"),
-                  fmt::format("subtract {:.4f} s from the stamps of the ground truth", lag->lag_s));
+  Cause cause = truth_cause("truth_late", "ground truth late",
+                            fmt::format("its rotation is {:.1f} +- {:.1f} ms behind that of the {}",
+                                        1e3 * lag->lag_s, 1e3 * lag->sigma_s, found->sensor),
+                            fmt::format("subtract {:.4f} s from the stamps of the ground truth", lag->lag_s));
   cause.strength = std::abs(lag->lag_s) / lag->sigma_s;
   cause.correction = Correction{.change = [lag_s = lag->lag_s](auto& changed) {
     for (StampedPose& pose : changed.ground_truth.trajectory.poses) pose.t = after(pose.t, -lag_s);

@@ -189,6 +189,17 @@ TEST(StartCauses, NameACameraThatMovesAtOnce) {
   EXPECT_TRUE(start_causes(rig.info, rig.survey).empty());
 }
 
+/// A bias that the odometry has to find in motion was not listed, as most recordings begin in motion.
+TEST(StartCauses, AreListedWithoutAnEffectForALargeGyroscopeBias) {
+  TurningRig rig({});
+  ASSERT_TRUE(start_causes(rig.info, rig.survey).front().needs_effect);
+  for (ImuSample& sample : rig.info.imu) sample.gyro_b += Eigen::Vector3d(0.1, -0.1, 0.1);
+  const Cause cause = start_causes(rig.info, rig.survey).front();
+  EXPECT_FALSE(cause.needs_effect);
+  EXPECT_EQ(cause.basis, CauseBasis::kCompared);
+  EXPECT_NE(cause.evidence.find("bias of 0.17 rad/s"), std::string::npos) << cause.evidence;
+}
+
 /// On market, blank frames and ground truth that is late came after noise of the IMU and recorded boxes,
 /// which any fault lets a run find; and causes whose effect cannot be measured came after all others.
 TEST(OtherCauses, BeginWithWhatTheDataShows) {
@@ -333,6 +344,13 @@ TEST(TruthCauses, TellALateTruthAndTheCorrectionShiftsIt) {
   found->correction->change(camera.rig.info);
   EXPECT_NEAR(seconds_between(from_seconds(10.0), camera.rig.info.ground_truth.trajectory.poses[0].t), 0.0,
               0.001);
+}
+
+/// On market, with the IMU 30 ms late, the truth came before the clock of the IMU.
+TEST(TruthCauses, BlameNoTruthWhoseClockIsThatOfTheImages) {
+  MovingCamera camera(Pose{});
+  for (ImuSample& sample : camera.rig.info.imu) sample.t = after(sample.t, 0.03);
+  EXPECT_FALSE(cause_named(camera.causes(), "truth_late"));
 }
 
 TEST(TruthCauses, TellAJumpAtItsTime) {
