@@ -251,9 +251,8 @@ void visit_noise_fields(Visitor&& field, Config& config) {
                 "Whether the world is level by initialization (published), or the direction of gravity is a "
                 "state and the first pose fixes the world."});
   field("prior", config.prior,
-        FieldInfo{.text =
-                      "Marginalization prior once the IMU is initialized: as published, or consistent, with "
-                      "first-estimates Jacobians and each observation counted once.",
+        FieldInfo{.text = "Marginalization prior: as published, or consistent, with "
+                          "first-estimates Jacobians and each observation counted once.",
                   .paper = "II"});
   field("covariance", config.covariance,
         FieldInfo{.text = "Whether the covariance of the newest state is computed with each frame: for the "

@@ -25,7 +25,7 @@ ResidualBuilder::ResidualBuilder(const Window& window, const BackendConfig& conf
 
 /// Linearization point of a state that the prior involves; null with the published prior.
 const double* ResidualBuilder::first_estimate(BlockRef block) const {
-  if (!has_consistent_prior(window_, config_)) return nullptr;
+  if (config_.prior != PriorModel::kConsistent) return nullptr;
   for (const PriorBlock& known : window_.prior.blocks) {
     if (known.kind == block.kind && known.frame == block.frame) return known.linearization.data();
   }

@@ -127,7 +127,7 @@ bool is_calibration_of_images(BlockKind kind) {
 
 Linearization linearize_at(const ParameterBlocks& now, const Window& window, const BackendConfig& config,
                            ParameterBlocks& point) {
-  if (!has_consistent_prior(window, config)) return {now, now};
+  if (config.prior != PriorModel::kConsistent) return {now, now};
   point = now;
   for (const PriorBlock& block : window.prior.blocks) {
     if (is_calibration_of_images(block.kind)) continue;
@@ -189,17 +189,17 @@ VariableGlobals solved_globals(const Window& window, const BackendConfig& config
 
 VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config) {
   VariableGlobals globals = variable_globals(window, config);
-  if (!has_consistent_prior(window, config)) globals.extrinsics = globals.time_offset = false;
+  if (config.prior != PriorModel::kConsistent) globals.extrinsics = globals.time_offset = false;
   return globals;
 }
 
 double marginalized_fraction(const Landmark& landmark, const Window& window, const BackendConfig& config) {
   const bool continues = landmark.last() == window.newest();
-  return continues && has_consistent_prior(window, config) ? kMarginalizedFraction : 1.0;
+  return continues && config.prior == PriorModel::kConsistent ? kMarginalizedFraction : 1.0;
 }
 
 void remove_marginalized_information(const BackendConfig& config, Window& window) {
-  if (!has_consistent_prior(window, config)) return;
+  if (config.prior != PriorModel::kConsistent) return;
   for (Landmark& landmark : window.landmarks) {
     if (landmark.host != 0 || !is_usable(landmark)) continue;
     const double remaining = 1.0 - marginalized_fraction(landmark, window, config);

@@ -138,11 +138,6 @@ void unpack(const ParameterBlocks& blocks, Window& window);
   return config.estimate_extrinsics || window.is_realigned;
 }
 
-/// Whether `PriorModel::kConsistent` applies.
-[[nodiscard]] inline bool has_consistent_prior(const Window& window, const BackendConfig& config) {
-  return window.inertial && config.prior == PriorModel::kConsistent;
-}
-
 /// Which global states are variable.
 struct VariableGlobals {
   bool extrinsics = false;

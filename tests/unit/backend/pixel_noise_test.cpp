@@ -53,6 +53,28 @@ TEST(ReprojectionVariance, OfAConstantErrorIsCorrelated) {
   EXPECT_NEAR(variance->correlated_px2, 25.0 / (2.0 * std::log(2.0)), 1e-6);
 }
 
+TEST(ReprojectionVariance, OfIndependentErrorsHasNoDesignEffect) {
+  const auto variance = ReprojectionErrorMonitor().measure(noisy_window(0.5), kFocal_px);
+  ASSERT_TRUE(variance);
+  EXPECT_NEAR(variance->design_effect, 1.0, 3.0);  // 400 features with 145 neighbors each: 1 +- 1
+}
+
+TEST(ReprojectionVariance, OfErrorsOfTheWholeImageCountsTheNeighborsOfAFeature) {
+  Window window = visual_window(4, 60);
+  int neighbors = 0;
+  for (Landmark& a : window.landmarks) {
+    const Eigen::Vector2d bearing = a.observations.back().bearing;
+    for (const Landmark& b : window.landmarks)
+      neighbors += &a != &b && (b.observations.back().bearing - bearing).norm() < 0.4;
+  }
+  for (Landmark& landmark : window.landmarks)
+    landmark.observations.back().bearing += Eigen::Vector2d(3.0, 4.0) / kFocal_px;
+  const auto variance = ReprojectionErrorMonitor().measure(window, kFocal_px);
+  ASSERT_TRUE(variance);
+  EXPECT_GT(neighbors, 60);
+  EXPECT_NEAR(variance->design_effect, 1.0 + neighbors / 60.0, 0.05);
+}
+
 TEST(ReprojectionVariance, IsUnknownWithTooFewObservations) {
   EXPECT_FALSE(ReprojectionErrorMonitor().measure(visual_window(2, 19), kFocal_px));
   EXPECT_FALSE(ReprojectionErrorMonitor().measure(visual_window(2, 40), kFocal_px)) << "no differences";
@@ -73,6 +95,17 @@ TEST(PixelNoise, CountsModelErrorSixTimes) {
   EXPECT_NEAR(settled_sigma_px({.white_px2 = 0.5}, 1.0), std::sqrt(0.5), 1e-6);
   EXPECT_NEAR(settled_sigma_px({.white_px2 = 0.5, .correlated_px2 = 0.2}, 1.0), std::sqrt(1.7), 1e-6);
   EXPECT_NEAR(settled_sigma_px({.white_px2 = 0.5}, 4.0), 4.0 * std::sqrt(0.5), 1e-6);
+}
+
+TEST(PixelNoise, OfTheOptimizationContainsTheDesignEffect) {
+  PixelNoise noise(0.25, 1.0);
+  for (int i = 0; i < 200; ++i) noise.observe({.white_px2 = 0.5, .design_effect = 9.0});
+  EXPECT_NEAR(noise.sigma_px(), std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(noise.applied_to({}).pixel_sigma_px, 3.0 * std::sqrt(0.5), 1e-6);
+  for (int i = 0; i < 200; ++i) noise.observe({.white_px2 = 0.5, .design_effect = 0.5});
+  EXPECT_NEAR(noise.applied_to({}).pixel_sigma_px, std::sqrt(0.5), 1e-6) << "at least 1";
+  for (int i = 0; i < 200; ++i) noise.observe({.white_px2 = 50.0, .design_effect = 9.0});
+  EXPECT_NEAR(noise.applied_to({}).pixel_sigma_px, 9.0, 1e-6) << "bounded";
 }
 
 TEST(PixelNoise, OfTheChangesIsThatOfTheWhitePart) {

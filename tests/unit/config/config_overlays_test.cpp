@@ -81,7 +81,7 @@ TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
   EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"},
                                                   {"backend.keyframe_min_shared_ratio", "0.7"},
                                                   {"backend.pixel_sigma_px", "0.5"},
-                                                  {"backend.pixel_noise_scale", "4.0"},
+                                                  {"backend.pixel_noise_scale", "2.0"},
                                                   {"backend.cauchy_scale", "0.5"}}));
 }
 
