@@ -21,7 +21,7 @@ namespace stillpoint {
 /// remains excluded from the estimate.
 ///
 /// Not in the paper: with `masked_static_frames` = n > 0, features inside the mask with r_k <= 1 px in their
-/// last n residuals are relabeled as stable, the oldest first, while less than three quarters of all features
+/// last n residuals are relabeled as stable, the oldest first, while less than two thirds of all features
 /// are stable, so that a wrong box over much of the image costs little. While the mask excludes a feature,
 /// the poses do not depend on it, and its residuals are independent evidence. The label history is not
 /// affected.

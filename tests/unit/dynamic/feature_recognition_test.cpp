@@ -207,11 +207,11 @@ TEST(FeatureRecognition, ReadmitsInsideTheMaskAfterEnoughSmallResiduals) {
             expected);
 }
 
-TEST(FeatureRecognition, ReadmitsNoneInsideTheMaskWhileThreeQuartersAreStable) {
+TEST(FeatureRecognition, ReadmitsNoneInsideTheMaskWhileTwoThirdsAreStable) {
   const std::vector<std::optional<double>> residuals_px(10, 0.0);
   const std::vector<std::string_view> excluded(10, "dynamic_object");
-  EXPECT_NE(labels_inside_the_mask(with_masked_static_frames(3), residuals_px, 2), excluded);  // 2 of 3
-  EXPECT_EQ(labels_inside_the_mask(with_masked_static_frames(3), residuals_px, 3), excluded);  // 3 of 4
+  EXPECT_NE(labels_inside_the_mask(with_masked_static_frames(3), residuals_px, 1), excluded);  // 1 of 2
+  EXPECT_EQ(labels_inside_the_mask(with_masked_static_frames(3), residuals_px, 2), excluded);  // 2 of 3
 }
 
 TEST(FeatureRecognition, TheMaskOfThePaperIgnoresResiduals) {
