@@ -19,7 +19,7 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::string_view kRootConfig = "bench/configs/dynamic_vins.toml";
+constexpr std::string_view kRootConfig = "bench/configs/stillpoint.toml";
 
 /// A config file with all files that it inherits, the root first.
 struct ConfigChain {

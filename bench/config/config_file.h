@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Resolves configs: a base file with the files it inherits, then overlays, then single settings. It is the
-/// component `config` of an installation: `load_config({})` is the config of `stillpoint run`.
+/// component `config` of an installation: `load_config({})` is the config of `stillpoint run`, and equal to
+/// `OdometryConfig{}`.
 ///
 /// Text form of a config: all keys with their values, for display, manifests and comparison.
 #pragma once
@@ -22,7 +23,7 @@ struct ConfigRequest {
 
 /// Reads and merges all files and settings of a request.
 ///
-/// A file is a base if it is `dynamic_vins` or inherits it, directly or indirectly; any other is an overlay.
+/// A file is a base if it is `stillpoint` or inherits it, directly or indirectly; any other is an overlay.
 /// @throws InputError for unknown names, circular inheritance, two bases, and every fault of a file
 [[nodiscard]] OdometryConfig load_config(const ConfigRequest& request);
 

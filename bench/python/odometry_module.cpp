@@ -201,8 +201,8 @@ void bind_odometry(py::module_& m) {
              return std::make_unique<Odometry>(values, rig);
            }),
            py::arg("config"), py::arg("rig"),
-           "config: tables of the config keys, see stillpoint.load_config; others have the defaults of the "
-           "C++ library. Raises "
+           "config: tables of the config keys, see stillpoint.load_config; others have the defaults of "
+           "the program. Raises "
            "InputError for an unknown key, a value out of range, or a rig that lacks a sensor.")
       .def(
           "add_imu",

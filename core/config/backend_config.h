@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Configuration of the estimator: window, solver, depth, initialization. Defaults are those of Dynamic-VINS,
-/// except for checks, limits and priors that it lacks; its config disables them. The field lists explain the
-/// keys.
+/// Configuration of the estimator: window, solver, depth, initialization. The defaults are those of the
+/// program, see odometry_config.h. The field lists explain the keys.
 #pragma once
 
 #include <type_traits>
@@ -62,15 +61,15 @@ constexpr auto enum_names(TimeOffsetModel) {
 
 /// How measured depth enters the estimate.
 struct DepthConfig {
-  DepthUsage usage = DepthUsage::kFixed;
+  DepthUsage usage = DepthUsage::kWeighted;
   double min_m = 0.3;
   double max_m = 8.0;
   double inverse_sigma = 0.003;
-  double outlier_sigmas = 2.0;
-  double agreement_probability = 0.0;
-  double max_scale_error = 0.0;
+  double outlier_sigmas = 5.0;
+  double agreement_probability = 0.99999;
+  double max_scale_error = 0.04;  ///< a sensor whose scale changes must not change that of the world
   double max_landmark_depth_m = 100.0;
-  bool estimate_scale = false;
+  bool estimate_scale = true;  ///< depth of real sensors is up to 22 % short, the inertial scale 0.6 % off
   double scale_sigma = 0.1;
   double scale_bound = 0.3;
 
@@ -118,10 +117,11 @@ void visit_fields(Visitor&& field, Config& config) {
 
 /// Initialization, and the uncertainty of the initial state. Position and heading of frame 0 fix the gauge.
 struct InitializerConfig {
-  InitializerKind kind = InitializerKind::kWindow;
+  InitializerKind kind = InitializerKind::kInstant;
   double gyro_bias_sigma = 0.02;
   double accel_bias_sigma = 0.1;
-  bool align_rotations = false;
+  bool align_rotations =
+      true;  ///< else a rotation far off is not found, or taken for the center of the camera
   double max_scale_sigma = 0.1;
 
   // Not keys: no config changes them.
@@ -159,32 +159,36 @@ void visit_fields(Visitor&& field, Config& config) {
 inline constexpr int kMaxWindowSize = 40;
 
 struct BackendConfig {
-  double rate_hz = 10.0;
+  double rate_hz = 0.0;  ///< every frame is optimized
   int window_size = 10;
   double keyframe_parallax_px = 10.0;
-  double keyframe_min_shared_ratio = 0.5;
-  double keyframe_max_interval_s = 5.0;
-  double pixel_sigma_px = 1.5;
-  double pixel_noise_scale = 0.0;
+  double keyframe_min_shared_ratio =
+      0.5;  ///< else features behind a passing person are lost without a keyframe
+  double keyframe_max_interval_s = 0.5;  ///< limits the preintegration interval while the camera is at rest
+  double pixel_sigma_px = 0.25;          ///< a prior that counts repeatedly needs a larger one
+  double pixel_noise_scale = 1.0;        ///< the noise of the residuals, whatever the camera
   double cauchy_scale = 1.0;
-  WindowSolverKind solver = WindowSolverKind::kCeres;
-  int max_iterations = 8;
-  GravityModel gravity = GravityModel::kFixed;
-  PriorModel prior = PriorModel::kPublished;
-  bool covariance = false;
-  bool bias_steps = false;
+  WindowSolverKind solver = WindowSolverKind::kSchur;  ///< the same minimum in a twentieth of the time
+  int max_iterations = 4;  ///< as accurate as 8 when starting from the inertial prediction
+  GravityModel gravity =
+      GravityModel::kEstimated;  ///< else the world turns while tilt and accelerometer bias become known
+  PriorModel prior = PriorModel::kConsistent;  ///< counts each observation once
+  bool covariance = true;                      ///< of the newest state, with each frame
+  bool bias_steps = true;  ///< else a sensor whose bias changes takes the estimate with it
   bool estimate_time_offset = true;
-  TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
+  TimeOffsetModel time_offset_model =
+      TimeOffsetModel::kInertial;  ///< the state is at the exposure, not the bearings moved to the stamp
   double time_offset_sigma_s = 0.01;
-  double time_offset_walk = 0.0;
-  double time_offset_bound_s = 1.0;
+  double time_offset_walk = 0.001;
+  double time_offset_bound_s = 0.15;  ///< five times the search range of Kalibr; more means wrong time stamps
   bool estimate_extrinsics = false;
-  bool estimate_lens = false;
+  bool estimate_lens = true;  ///< the focal length of consumer cameras is 2 % off, k1 0.05, the center 5 px
   double extrinsics_sigma_m = 0.02;
   double extrinsics_sigma_rad = 0.02;
-  double extrinsics_bound_m = 10.0;
-  double extrinsics_bound_rad = 3.14;
-  double calibration_agreement_probability = 0.0;
+  double extrinsics_bound_m = 0.1;  ///< more means a wrong rig
+  double extrinsics_bound_rad = 0.2;
+  double calibration_agreement_probability =
+      0.9999;  ///< else what is not yet known of a true calibration moves the poses
   double max_dead_reckoning_s = 6.0;
   DepthConfig depth;
   InitializerConfig initializer;

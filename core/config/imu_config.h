@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Configuration of IMU processing. The field list explains each key.
+/// Configuration of IMU processing. The defaults are those of the program, see odometry_config.h. The field
+/// list explains each key.
 #pragma once
 
 #include <type_traits>
@@ -12,7 +13,7 @@ struct ImuConfig {
   bool enabled = true;
   double gravity = 9.81;
   double noise_scale = 1.0;
-  bool adapt_noise = false;
+  bool adapt_noise = true;  ///< a moving sensor is noisier than its data sheet; else worse than vision alone
   double gyro_noise = 0.0;
   double accel_noise = 0.0;
   double gyro_walk = 0.0;

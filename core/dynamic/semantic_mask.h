@@ -4,10 +4,9 @@
 /// A feature at pixel u with depth d is dynamic if u lies in the box of an object and d < d_bar, Eq. (2).
 ///
 /// `dynamic.mask` selects how the depth range of an object is computed:
-///   "depth_threshold"  Eq. (2), the default of DynamicConfig: bench/configs/dynamic_vins.toml and
-///                      dynamic_vins_vo.toml
-///   "depth_band"       object_depth_band, not in the paper: bench/configs/stillpoint.toml (the default
-///                      configuration of the program) and the overlay ablations/depth_band.toml
+///   "depth_threshold"  Eq. (2): bench/configs/dynamic_vins.toml and dynamic_vins_vo.toml
+///   "depth_band"       object_depth_band, not in the paper: the default, and the overlay
+///                      ablations/depth_band.toml
 ///   "whole_box"        d_bar = +inf: the overlay ablations/wo_seg_like_mask.toml
 ///   "off"              no mask: baselines/vins_rgbd.toml and baselines/vins_mono.toml
 /// All other files in bench/configs/ are overlays that do not change the mask.

@@ -36,9 +36,7 @@ stillpoint::Frame take_frame(int index) {
 }  // namespace
 
 int main() {
-  stillpoint::OdometryConfig config;
-  config.backend.rate_hz = 0.0;  // every frame enters the window
-  stillpoint::Odometry odometry(config, make_rig());
+  stillpoint::Odometry odometry(stillpoint::OdometryConfig{}, make_rig());  // the default of `stillpoint run`
   stillpoint::Timestamp imu_time = stillpoint::from_seconds(0.9);
   for (int i = 0; i < 60; ++i) {
     const stillpoint::Frame frame = take_frame(i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Runs the odometry on a sequence folder with a config of the program, and writes its poses in the TUM
-/// format.
-///   run_dataset FOLDER OUT [CONFIG]     CONFIG: "stillpoint" (default), "dynamic_vins", ..., or a TOML file
+/// Runs the odometry on a sequence folder with the default config or another of the program, and writes its
+/// poses in the TUM format.
+///   run_dataset FOLDER OUT [CONFIG]     CONFIG: "dynamic_vins", ..., or a TOML file
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   }
   try {
     const stillpoint::OdometryConfig config =
-        stillpoint::bench::load_config({.base = argc == 4 ? argv[3] : "stillpoint"});
+        argc == 4 ? stillpoint::bench::load_config({.base = argv[3]}) : stillpoint::OdometryConfig{};
     const auto sequence = stillpoint::datasets::open_sequence(argv[1]);
     stillpoint::eval::write_tum(run(*sequence, config), argv[2]);
   } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/support/published_config.h"
 #include "tests/support/random.h"
 #include "tests/support/simulated/faulty_run.h"
 
@@ -92,7 +93,7 @@ FaultyScenario random_scenario(int seed) {
   scenario.uses_imu = random.uniform(0.0, 1.0) < 0.75;
   if (seed % 4 != 0) use_consistent_prior(scenario.backend);
   if (random.uniform(0.0, 1.0) < 0.25) {
-    scenario.backend = BackendConfig{};
+    scenario.backend = published_config().backend;
     scenario.backend.rate_hz = 0.0;
   }
   scenario.backend.window_size = 5;

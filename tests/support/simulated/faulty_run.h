@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/backend/estimator.h"
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -15,10 +16,10 @@ namespace stillpoint {
 inline constexpr double kBegin_s = 4.0;  ///< of faults
 inline constexpr double kEnd_s = 100.0;  ///< after the runs
 
-/// The settings of bench/configs/stillpoint.toml that matter to the backend, with the overlay
-/// published_prior: the limits of the scenarios were set with it.
+/// The published backend with the settings of the default that matter to the scenarios, besides the prior:
+/// their limits were set with it.
 inline BackendConfig default_backend() {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.rate_hz = 0.0;
   config.solver = WindowSolverKind::kSchur;
   config.gravity = GravityModel::kEstimated;
@@ -30,7 +31,7 @@ inline BackendConfig default_backend() {
   return config;
 }
 
-/// Without that overlay.
+/// The prior of the default with the noise of the scenarios.
 inline void use_consistent_prior(BackendConfig& config) {
   config.prior = PriorModel::kConsistent;
   config.pixel_sigma_px = 0.5;
@@ -93,7 +94,7 @@ inline Rig rig_of(const FaultyScenario& scenario) {
 }
 
 inline ImuConfig imu_config_of(const FaultyScenario& scenario) {
-  ImuConfig config;
+  ImuConfig config = published_config().imu;
   config.enabled = scenario.uses_imu;
   return config;
 }

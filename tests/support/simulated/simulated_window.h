@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/backend/estimator.h"
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -11,7 +12,7 @@ constexpr double kSimulatedFocal_px = 500.0;
 
 /// Depths are residuals; always eight iterations (the cost tolerance never stops the solve).
 inline BackendConfig simulated_window_config() {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.rate_hz = 0.0;
   config.depth.usage = DepthUsage::kWeighted;
   config.initializer.kind = InitializerKind::kInstant;
@@ -36,7 +37,7 @@ inline Window simulated_window(const SimulatedWindowOptions& options = {}) {
                                .noisy_imu = true,
                                .time_offset_s = options.time_offset_s,
                                .points = options.points};
-  ImuConfig imu;
+  ImuConfig imu = published_config().imu;
   imu.enabled = options.inertial;
   Estimator estimator(options.config, imu, SimulatedMotion::rig(), 1);
   for (const ImuSample& sample : motion.imu(0.1 * options.frames + 1.0)) estimator.add_imu(sample);

@@ -2,12 +2,12 @@
 /// Fast visual odometry configuration for tests of runners.
 #pragma once
 
-#include "core/config/odometry_config.h"
+#include "tests/support/published_config.h"
 
 namespace stillpoint {
 
 inline OdometryConfig visual_config(int feedback_lag = 0) {
-  OdometryConfig config;
+  OdometryConfig config = published_config();
   config.imu.enabled = false;
   config.frontend.min_distance_px = 10;
   config.frontend.unstable_radius_px = 10;

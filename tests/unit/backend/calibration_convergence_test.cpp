@@ -8,6 +8,7 @@
 
 #include "core/backend/estimator.h"
 #include "core/geometry/so3.h"
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -36,7 +37,7 @@ struct CalibrationError {
 };
 
 BackendConfig calibrating_config() {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.rate_hz = 0.0;
   config.solver = WindowSolverKind::kSchur;
   config.max_iterations = 4;

@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/so3.h"
+#include "tests/support/published_config.h"
 
 namespace stillpoint {
 namespace {
 
 BackendConfig bounded_config() {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.time_offset_bound_s = 0.1;
   config.extrinsics_bound_m = 0.05;
   config.extrinsics_bound_rad = 0.1;
@@ -50,7 +51,7 @@ TEST(CalibrationBounds, LimitTheDeviationFromTheRig) {
 }
 
 BackendConfig estimating_config() {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.estimate_extrinsics = true;
   config.depth.estimate_scale = true;
   config.calibration_agreement_probability = 0.999;

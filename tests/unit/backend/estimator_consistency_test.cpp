@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/nees_simulation.h"
 #include "tests/support/simulated/simulated_motion.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 /// Noise as simulated, so that the covariance can be compared with the errors.
 OdometryConfig simulated_config(PriorModel prior) {
-  OdometryConfig config;
+  OdometryConfig config = published_config();
   config.backend.rate_hz = 0.0;
   config.backend.solver = WindowSolverKind::kSchur;
   config.backend.gravity = GravityModel::kEstimated;

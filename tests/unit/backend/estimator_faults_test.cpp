@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/faulty_run.h"
 
 namespace stillpoint {
@@ -43,7 +44,7 @@ TEST(EstimatorFaults, AStartNeedsAWindowThatVisionLocated) {
   const FaultyRun run = run_with_faults(scenario);
   EXPECT_EQ(run.count_located(0.0, 0.45), 0);
   EXPECT_LT(run.worst_error_m(0.0, kEnd_s), 0.02);  // was 0.148
-  scenario.backend = BackendConfig{};
+  scenario.backend = published_config().backend;
   scenario.backend.rate_hz = 0.0;
   EXPECT_LT(run_with_faults(scenario).worst_error_m(0.0, kEnd_s), 0.03);
 }

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/imu_queue.h"
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -70,7 +71,7 @@ SimulatedRun simulate(const SimulatedMotion& motion, const BackendConfig& backen
 }
 
 BackendConfig every_frame() {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.rate_hz = 0.0;
   config.depth.usage = DepthUsage::kWeighted;
   config.initializer.kind = InitializerKind::kInstant;
@@ -137,7 +138,7 @@ TEST(Estimator, TracksWithoutAnImu) {
 }
 
 TEST(Estimator, TracksWithConstantDepthsAtTheBackendRateOfThePaper) {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   const SimulatedRun run =
       simulate(SimulatedMotion{.pixel_noise_px = 0.3, .depth_noise = 0.001}, config, {}, 5.0);
   EXPECT_LT(run.position_rmse_m, 0.03);

@@ -7,6 +7,7 @@
 #include "core/backend/solvers/window_problem.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/window/landmark_tracks.h"
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
@@ -115,7 +116,7 @@ TEST(Marginalization, TheConsistentPriorTakesInformationFromTheObservations) {
 }
 
 TEST(Marginalization, ThePublishedPriorCountsObservationsAgain) {
-  const BackendConfig config;
+  const BackendConfig config = published_config().backend;
   Window window = inertial_window_with_ended_track();
   EXPECT_EQ(marginalized_fraction(window.landmarks.back(), window, config), 1.0);
   remove_marginalized_information(config, window);

@@ -6,6 +6,7 @@
 
 #include "core/backend/window/landmark_tracks.h"
 #include "core/imu/imu_buffer.h"
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -14,7 +15,7 @@ namespace {
 constexpr int kFrames = 11;
 
 BackendConfig monocular() {
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.depth.usage = DepthUsage::kOff;
   config.initializer.kind = InitializerKind::kMonocular;
   return config;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/backend/start/initial_prior.h"
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
@@ -27,7 +28,7 @@ Landmark landmark_beyond_infinity(const Window& window) {
 TEST(WindowSolver, ALandmarkBeyondInfinityDoesNotAffectTheOthers) {
   const Window truth = visual_window(5, 30);
   Window window = truth;
-  BackendConfig config;
+  BackendConfig config = published_config().backend;
   config.depth.usage = DepthUsage::kWeighted;
   window.prior = initial_prior(window, config);
   window.landmarks.push_back(landmark_beyond_infinity(truth));

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The exact keys in which each shipped config differs from its parent.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "bench/config/config_file.h"
+#include "bench/config/config_keys.h"
+#include "bench/config/settings.h"
 #include "bench/config/toml_source.h"
 
 namespace stillpoint::bench {
@@ -96,70 +100,96 @@ TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
                      {"backend.depth.max_m", "10.0"}}));
 }
 
-const Entries kKeysOfStillpoint = {{"imu.adapt_noise", "true"},
-                                   {"frontend.min_distance_px", "20"},
-                                   {"frontend.unstable_radius_px", "20"},
-                                   {"frontend.prediction", "\"full\""},
-                                   {"frontend.tracker", "\"patch\""},
-                                   {"frontend.window_px", "15"},
-                                   {"frontend.min_correlation", "0.6"},
-                                   {"frontend.outlier_model", "\"rigid\""},
-                                   {"frontend.ransac_threshold_px", "2.0"},
-                                   {"frontend.ransac_min_inlier_ratio", "0.5"},
-                                   {"frontend.reject_static_only", "true"},
-                                   {"frontend.drift_min_correlation", "0.9"},
-                                   {"frontend.recover_view", "true"},
-                                   {"frontend.depth_max_spread", "0.05"},
-                                   {"frontend.grid.stop_early", "true"},
-                                   {"dynamic.mask", "\"depth_band\""},
-                                   {"dynamic.epsilon_m", "0.4"},
-                                   {"dynamic.depth_window_px", "5"},
-                                   {"dynamic.box_margin_px", "2.0"},
-                                   {"dynamic.unmeasured_is_dynamic", "false"},
-                                   {"dynamic.max_skipped_frames", "10"},
-                                   {"dynamic.growth_px_per_miss", "3.0"},
-                                   {"dynamic.mcc_threshold_px", "5.0"},
-                                   {"dynamic.mcc_min_observations", "3"},
-                                   {"dynamic.recycle_min_frames", "3"},
-                                   {"dynamic.min_static_frames", "3"},
-                                   {"dynamic.masked_static_frames", "30"},
-                                   {"dynamic.gate_before_solve", "true"},
-                                   {"dynamic.gate_probability", "0.99999"},
-                                   {"dynamic.min_stable_features", "20"},
-                                   {"backend.rate_hz", "0.0"},
-                                   {"backend.keyframe_min_shared_ratio", "0.5"},
-                                   {"backend.keyframe_max_interval_s", "0.5"},
-                                   {"backend.pixel_sigma_px", "0.25"},
-                                   {"backend.pixel_noise_scale", "1.0"},
-                                   {"backend.solver", "\"schur\""},
-                                   {"backend.max_iterations", "4"},
-                                   {"backend.gravity", "\"estimated\""},
-                                   {"backend.prior", "\"consistent\""},
-                                   {"backend.covariance", "true"},
-                                   {"backend.bias_steps", "true"},
-                                   {"backend.time_offset_model", "\"inertial\""},
-                                   {"backend.time_offset_sigma_s", "0.01"},
-                                   {"backend.time_offset_walk", "0.001"},
-                                   {"backend.time_offset_bound_s", "0.15"},
-                                   {"backend.estimate_lens", "true"},
-                                   {"backend.extrinsics_bound_m", "0.1"},
-                                   {"backend.extrinsics_bound_rad", "0.2"},
-                                   {"backend.calibration_agreement_probability", "0.9999"},
-                                   {"backend.depth.usage", "\"weighted\""},
-                                   {"backend.depth.max_m", "8.0"},
-                                   {"backend.depth.outlier_sigmas", "5.0"},
-                                   {"backend.depth.agreement_probability", "0.99999"},
-                                   {"backend.depth.max_scale_error", "0.04"},
-                                   {"backend.depth.max_landmark_depth_m", "100.0"},
-                                   {"backend.depth.estimate_scale", "true"},
-                                   {"backend.initializer.kind", "\"instant\""},
-                                   {"backend.initializer.gyro_bias_sigma", "0.02"},
-                                   {"backend.initializer.accel_bias_sigma", "0.1"},
-                                   {"backend.initializer.align_rotations", "true"},
-                                   {"loop.min_inliers", "50"}};
+/// A key with its published value and the default.
+struct ChangedKey {
+  std::string key, published, stillpoint;
+  friend bool operator==(const ChangedKey&, const ChangedKey&) = default;
+};
+const std::vector<ChangedKey> kKeysOfStillpoint = {
+    {"imu.adapt_noise", "false", "true"},
+    {"frontend.min_distance_px", "30", "20"},
+    {"frontend.unstable_radius_px", "30", "20"},
+    {"frontend.prediction", "\"rotation\"", "\"full\""},
+    {"frontend.tracker", "\"opencv\"", "\"patch\""},
+    {"frontend.window_px", "21", "15"},
+    {"frontend.min_correlation", "0.8", "0.6"},
+    {"frontend.outlier_model", "\"epipolar\"", "\"rigid\""},
+    {"frontend.ransac_threshold_px", "1.0", "2.0"},
+    {"frontend.ransac_min_inlier_ratio", "0.0", "0.5"},
+    {"frontend.reject_static_only", "false", "true"},
+    {"frontend.drift_min_correlation", "0.0", "0.9"},
+    {"frontend.recover_view", "false", "true"},
+    {"frontend.depth_max_spread", "0.0", "0.05"},
+    {"frontend.grid.stop_early", "false", "true"},
+    {"dynamic.mask", "\"depth_threshold\"", "\"depth_band\""},
+    {"dynamic.epsilon_m", "1.0", "0.4"},
+    {"dynamic.depth_window_px", "1", "5"},
+    {"dynamic.box_margin_px", "10.0", "2.0"},
+    {"dynamic.unmeasured_is_dynamic", "true", "false"},
+    {"dynamic.max_skipped_frames", "3", "10"},
+    {"dynamic.growth_px_per_miss", "10.0", "3.0"},
+    {"dynamic.mcc_threshold_px", "10.0", "5.0"},
+    {"dynamic.mcc_min_observations", "2", "3"},
+    {"dynamic.recycle_min_frames", "0", "3"},
+    {"dynamic.min_static_frames", "0", "3"},
+    {"dynamic.masked_static_frames", "0", "30"},
+    {"dynamic.gate_before_solve", "false", "true"},
+    {"dynamic.gate_probability", "0.0", "0.99999"},
+    {"dynamic.min_stable_features", "0", "20"},
+    {"backend.rate_hz", "10.0", "0.0"},
+    {"backend.keyframe_min_shared_ratio", "0.0", "0.5"},
+    {"backend.keyframe_max_interval_s", "10.0", "0.5"},
+    {"backend.pixel_sigma_px", "1.5", "0.25"},
+    {"backend.pixel_noise_scale", "0.0", "1.0"},
+    {"backend.solver", "\"ceres\"", "\"schur\""},
+    {"backend.max_iterations", "8", "4"},
+    {"backend.gravity", "\"fixed\"", "\"estimated\""},
+    {"backend.prior", "\"published\"", "\"consistent\""},
+    {"backend.covariance", "false", "true"},
+    {"backend.bias_steps", "false", "true"},
+    {"backend.time_offset_model", "\"bearing\"", "\"inertial\""},
+    {"backend.time_offset_sigma_s", "1.0", "0.01"},
+    {"backend.time_offset_walk", "0.0", "0.001"},
+    {"backend.time_offset_bound_s", "1.0", "0.15"},
+    {"backend.estimate_lens", "false", "true"},
+    {"backend.extrinsics_bound_m", "10.0", "0.1"},
+    {"backend.extrinsics_bound_rad", "3.14", "0.2"},
+    {"backend.calibration_agreement_probability", "0.0", "0.9999"},
+    {"backend.depth.usage", "\"fixed\"", "\"weighted\""},
+    {"backend.depth.max_m", "3.0", "8.0"},
+    {"backend.depth.outlier_sigmas", "2.0", "5.0"},
+    {"backend.depth.agreement_probability", "0.0", "0.99999"},
+    {"backend.depth.max_scale_error", "0.0", "0.04"},
+    {"backend.depth.max_landmark_depth_m", "10000.0", "100.0"},
+    {"backend.depth.estimate_scale", "false", "true"},
+    {"backend.initializer.kind", "\"window\"", "\"instant\""},
+    {"backend.initializer.gyro_bias_sigma", "10.0", "0.02"},
+    {"backend.initializer.accel_bias_sigma", "10.0", "0.1"},
+    {"backend.initializer.align_rotations", "false", "true"},
+    {"loop.min_inliers", "30", "50"}};
 
 TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
-  EXPECT_EQ(config_difference(base("dynamic_vins"), base("stillpoint")), kKeysOfStillpoint);
+  std::vector<ChangedKey> changed;
+  for (const DifferentKey& key : different_keys(base("dynamic_vins"), base("stillpoint")))
+    changed.push_back({key.key, key.a, key.b});
+  EXPECT_EQ(changed, kKeysOfStillpoint);
+}
+
+TEST(ConfigOverlays, StillpointIsTheDefaultConstructedConfig) {
+  EXPECT_EQ(config_difference(OdometryConfig{}, base("stillpoint")), Entries{});
+}
+
+/// Else a change of a default would change the published system, too.
+TEST(ConfigOverlays, DynamicVinsStatesEveryKeyOfItsMethods) {
+  const TomlSource source = find_toml("dynamic_vins", TomlKind::kConfig);
+  const std::vector<Setting> stated = parse_settings(source.text, source.path);
+  OdometryConfig config;
+  for (const ConfigField& field : fields_of(config)) {
+    const std::string group = field.key.substr(0, field.key.find('.'));
+    if (group != "frontend" && group != "dynamic" && group != "backend") continue;
+    if (field.key == "frontend.grid.threads") continue;  // does not change results
+    EXPECT_NE(std::ranges::find(stated, field.key, &Setting::key), stated.end()) << field.key;
+  }
 }
 
 TEST(ConfigOverlays, LibrariesSelectsOpenCvTrackerAndCeresSolver) {
@@ -185,21 +215,6 @@ TEST(ConfigOverlays, VinsMonoIsVinsRgbdWithoutDepth) {
             (Entries{{"backend.depth.usage", "\"off\""},
                      {"backend.initializer.kind", "\"monocular\""},
                      {"backend.initializer.max_scale_sigma", "10.0"}}));
-}
-
-/// The published system has neither these checks nor these priors.
-TEST(ConfigOverlays, DynamicVinsIsTheDefaultsOfTheCodeWithoutUnpublishedChecks) {
-  EXPECT_EQ(config_difference(OdometryConfig{}, base("dynamic_vins")),
-            (Entries{{"frontend.ransac_min_inlier_ratio", "0.0"},
-                     {"frontend.depth_max_spread", "0.0"},
-                     {"dynamic.max_skipped_frames", "3"},
-                     {"backend.keyframe_min_shared_ratio", "0.0"},
-                     {"backend.keyframe_max_interval_s", "10.0"},
-                     {"backend.time_offset_sigma_s", "1.0"},
-                     {"backend.depth.max_m", "3.0"},
-                     {"backend.depth.max_landmark_depth_m", "10000.0"},
-                     {"backend.initializer.gyro_bias_sigma", "10.0"},
-                     {"backend.initializer.accel_bias_sigma", "10.0"}}));
 }
 
 TEST(ConfigOverlays, SensorsStateTheirNoiseDensities) {

@@ -16,7 +16,7 @@ namespace {
 TEST(ConfigText, ReadsBackToTheSameConfig) {
   OdometryConfig config;
   config.imu.gravity = 9.8000000000000007;  // requires 17 digits
-  config.frontend.prediction = TrackerPrediction::kFull;
+  config.frontend.prediction = TrackerPrediction::kRotation;
   config.backend.rate_hz = 15.0;
   const OdometryConfig read = with_settings(OdometryConfig{}, parse_settings(config_text(config), "text"));
   EXPECT_EQ(config_entries(read), config_entries(config));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/dynamic/feature_recognition.h"
+#include "tests/support/published_config.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ const Eigen::Vector2d kInBox(40.0, 40.0);
 const Eigen::Vector2d kOutside(80.0, 40.0);
 
 DynamicConfig config() {
-  DynamicConfig config;
+  DynamicConfig config = published_config().dynamic;
   config.box_margin_px = 0.0;
   config.mcc_threshold_px = 5.0;
   config.mcc_min_observations = 3;

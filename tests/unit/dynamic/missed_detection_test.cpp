@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/dynamic/missed_detection.h"
+#include "tests/support/published_config.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@ namespace {
 
 /// No growth, as in the paper, so that the boxes show the motion only.
 DynamicConfig without_growth() {
-  DynamicConfig config;
+  DynamicConfig config = published_config().dynamic;
   config.growth_px_per_miss = 0.0;
   return config;
 }

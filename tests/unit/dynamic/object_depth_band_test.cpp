@@ -55,9 +55,7 @@ TEST(ObjectDepthBand, IsUnboundedWithoutValidDepth) {
 TEST(ObjectDepthBand, LimitsTheMaskToItsDepthRange) {
   cv::Mat depth = wall_at(4050);
   fill(depth, 15, 80, 30, 60, 2050);
-  DynamicConfig config;
-  config.mask = DynamicMask::kDepthBand;
-  const SemanticMask mask(std::vector{kBox}, {depth, 1000.0}, depth.size(), config);
+  const SemanticMask mask(std::vector{kBox}, {depth, 1000.0}, depth.size(), DynamicConfig{});
   EXPECT_TRUE(mask.covers({45.0, 40.0}, 2.05));
   EXPECT_FALSE(mask.covers({45.0, 40.0}, 1.5));
   EXPECT_FALSE(mask.covers({45.0, 40.0}, 4.05));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/dynamic/semantic_mask.h"
+#include "tests/support/published_config.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +56,7 @@ cv::Mat person_before_wall() {
 constexpr Box kPersonBox{.x_min = 20, .y_min = 10, .x_max = 70, .y_max = 79};
 
 DynamicConfig tight() {
-  DynamicConfig config;
+  DynamicConfig config = published_config().dynamic;
   config.box_margin_px = 0.0;
   return config;
 }

@@ -24,9 +24,6 @@ const Pose kStep{exp_so3({0.0, 0.0, 0.004}), {0.002, 0.001, -0.005}};
 
 FrontendConfig config_of(double min_correlation, bool gyroscope) {
   FrontendConfig config;
-  config.tracker = TrackerKind::kPatch;
-  config.outlier_model = OutlierModel::kRigid;
-  config.ransac_threshold_px = 2.0;
   config.drift_min_correlation = min_correlation;
   config.prediction = gyroscope ? TrackerPrediction::kRotation : TrackerPrediction::kNone;
   return config;

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
+#include "tests/support/published_config.h"
 #include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {
@@ -44,7 +45,7 @@ int count_tracked(const FrontendConfig& config, const Pose& motion, const Motion
 }
 
 FrontendConfig one_level(TrackerPrediction prediction) {
-  FrontendConfig config;
+  FrontendConfig config = published_config().frontend;
   config.prediction = prediction;
   config.pyramid_levels = 1;
   config.unpredicted_pyramid_levels = 1;
@@ -172,7 +173,7 @@ TEST(FeatureTracker, FeaturesAreSortedByIdAndFinite) {
 }
 
 TEST(FeatureTracker, CircularMaskEnforcesTheMinimumDistance) {
-  const TrackedFrame last = track_four_frames({}).back();
+  const TrackedFrame last = track_four_frames(published_config().frontend).back();
   for (const TrackedFeature& a : last.features) {
     for (const TrackedFeature& b : last.features) {
       // Circles are drawn around rounded pixels: 30 px minus the rounding of both centers, 2 * sqrt(0.5).
@@ -189,7 +190,7 @@ TEST(FeatureTracker, DetectsNothingNearLostFeatures) {
   const cv::Mat other = random_texture(second.gray.size(), 99);
   other(covered).copyTo(second.gray(covered));
   const auto detections_near_losses = [&](bool circular_mask) {
-    FrontendConfig config;
+    FrontendConfig config = published_config().frontend;
     config.tracker = TrackerKind::kPatch;   // it loses features by their correlation
     config.unpredicted_pyramid_levels = 1;  // no distant false matches for RANSAC to reject,
     config.ransac_threshold_px = 20.0;      // so that features are lost by KLT alone,
@@ -256,7 +257,7 @@ TEST(FeatureTracker, RejectsImagesOfAnotherSize) {
 }
 
 TEST(FeatureTracker, CountsEachModuleOncePerFrame) {
-  const TrackedFrame last = track_four_frames({}).back();
+  const TrackedFrame last = track_four_frames(published_config().frontend).back();
   for (const Module module : {Module::kFeatureTracking, Module::kFeatureDetection, Module::kOutlierRejection,
                               Module::kFeatureMask, Module::kTrackingThread}) {
     EXPECT_EQ(last.timings[module].calls, 1) << module_name(module);
@@ -268,7 +269,7 @@ TEST(FeatureTracker, CountsEachModuleOncePerFrame) {
 /// by 9 px. The features of the moving part are given as dynamic.
 int count_static_features_left(bool reject_static_only) {
   constexpr int kEdge = 430;
-  FrontendConfig config;
+  FrontendConfig config = published_config().frontend;
   config.outlier_model = OutlierModel::kRigid;
   config.reject_static_only = reject_static_only;
   const TexturedPlane plane = test_plane();

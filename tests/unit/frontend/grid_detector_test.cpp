@@ -117,6 +117,7 @@ TEST(GridDetector, StopEarlyFindsTheSameCornersInFewerCells) {
   const cv::Mat gray = random_texture(kImageSize, 1);
   const std::vector<cv::Point2f> tracked = {{20.0F, 20.0F}, {60.0F, 60.0F}, {100.0F, 20.0F}};
   GridDetectorConfig config = small_grid();
+  config.stop_early = false;
   GridDetector exhaustive(config, 2 * kCells);
   config.stop_early = true;
   GridDetector early(config, 2 * kCells);

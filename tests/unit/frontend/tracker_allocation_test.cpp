@@ -22,17 +22,9 @@ std::vector<Frame> ping_pong_frames() {
   return frames;
 }
 
-FrontendConfig fast_config() {
-  FrontendConfig config;
-  config.tracker = TrackerKind::kPatch;
-  config.outlier_model = OutlierModel::kRigid;
-  config.grid.stop_early = true;
-  return config;
-}
-
 TEST(FeatureTracker, SteadyStateIsAllocationFree) {
   const std::vector<Frame> frames = ping_pong_frames();
-  FeatureTracker tracker(fast_config(), test_camera());
+  FeatureTracker tracker(FrontendConfig{}, test_camera());
   TrackedFrame tracked;
   std::int64_t frame_id = 0;
   const auto round = [&] {

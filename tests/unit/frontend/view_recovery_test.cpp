@@ -10,6 +10,7 @@
 
 #include "core/frontend/feature_tracker.h"
 #include "core/geometry/so3.h"
+#include "tests/support/published_config.h"
 #include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {
@@ -31,7 +32,7 @@ class ViewLoss : public testing::Test {
     for (const TrackedFeature& feature : see(Pose{}).features) lost_[feature.id] = feature;
   }
   static FrontendConfig config() {
-    FrontendConfig config;
+    FrontendConfig config = published_config().frontend;
     config.tracker = TrackerKind::kPatch;
     config.min_correlation = 0.85;
     config.recover_view = true;
@@ -93,15 +94,14 @@ TEST_F(ViewLoss, ViewIsForgottenWhileAnotherIsSeen) {
   EXPECT_LT(continued(see(Pose{})), kByChance);
 }
 
-TEST(ViewRecovery, IsOffByDefault) { EXPECT_FALSE(FrontendConfig{}.recover_view); }
+TEST(ViewRecovery, IsOffAsPublished) { EXPECT_FALSE(published_config().frontend.recover_view); }
 
 TEST_F(ViewLoss, ResetForgetsTheView) {
   tracker_.reset();
   EXPECT_EQ(continued(see(Pose{})), 0);
 }
 
-/// Two views of a plane in turn, 50 to 90 px and up to 6 degrees apart: a camera of low rate in the hand. The
-/// keys are those of stillpoint.toml.
+/// Two views of a plane in turn, 50 to 90 px and up to 6 degrees apart: a camera of low rate in the hand.
 class LargeMotion {
  public:
   explicit LargeMotion(std::uint64_t seed) : plane_(test_camera(), kDistance_m, seed) {
@@ -110,21 +110,9 @@ class LargeMotion {
     other_ = {exp_so3({0.0, 0.0, random.uniform(-0.1, 0.1)}),
               {length_m * std::cos(direction), length_m * std::sin(direction), 0.0}};
   }
-  static FrontendConfig config() {
-    FrontendConfig config;
-    config.tracker = TrackerKind::kPatch;
-    config.min_correlation = 0.6;
-    config.drift_min_correlation = 0.9;
-    config.outlier_model = OutlierModel::kRigid;
-    config.ransac_threshold_px = 2.0;
-    config.min_distance_px = 20;
-    config.reject_static_only = true;
-    config.recover_view = true;
-    return config;
-  }
   /// Of the features of each frame that are inside the next view: the smallest fraction that is found there.
   [[nodiscard]] double smallest_continued_ratio() const {
-    FeatureTracker tracker(config(), test_camera());
+    FeatureTracker tracker(FrontendConfig{}, test_camera());
     TrackedFrame before = tracker.track(plane_.frame_at(Pose{}, 0), {}, {});
     double smallest = 1.0;
     for (int id = 1; id < 6; ++id) {
@@ -181,7 +169,7 @@ TEST(ViewRecoveryBehindMovers, TheBackgroundContinues) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const TexturedPlane plane(test_camera(), kDistance_m, seed);
     const cv::Mat companion = TexturedPlane(test_camera(), kDistance_m, 100 + seed).gray_at(Pose{});
-    FeatureTracker tracker(LargeMotion::config(), test_camera());
+    FeatureTracker tracker(FrontendConfig{}, test_camera());
     std::map<std::int64_t, Eigen::Vector2d> background;
     std::vector<std::int64_t> dynamic_ids;
     std::int64_t id = 0;

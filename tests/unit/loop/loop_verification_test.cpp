@@ -89,7 +89,7 @@ TEST(LoopVerification, RefusesAPoseThatIsNotCertainToFiveCentimeters) {
   const auto outcome_at = [&](float z_m) {
     const Keyframe match{.frame = 3, .features = wall(features, z_m)};
     const Keyframe query{.frame = 90, .features = revisited(match.features, kT_m_q, random)};
-    return verify_loop(query, match, kCamera, {}).record.outcome;
+    return verify_loop(query, match, kCamera, {.min_inliers = 30}).record.outcome;
   };
   EXPECT_EQ(outcome_at(1.5F), LoopOutcome::kAccepted);
   EXPECT_EQ(outcome_at(4.0F), LoopOutcome::kUncertain);

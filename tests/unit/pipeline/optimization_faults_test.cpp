@@ -11,17 +11,11 @@ namespace {
 
 using enum OdometryStatus;
 
-/// The settings of bench/configs/stillpoint.toml that matter here.
+/// The default, but for the backend.
 OdometryConfig stage_config(const FaultyScenario& scenario) {
   OdometryConfig config;
   config.backend = scenario.backend;
   config.imu = imu_config_of(scenario);
-  config.dynamic.mcc_threshold_px = 5;
-  config.dynamic.mcc_min_observations = 3;
-  config.dynamic.recycle_min_frames = 3;
-  config.dynamic.min_static_frames = 3;
-  config.dynamic.gate_before_solve = true;
-  config.dynamic.min_stable_features = 20;
   return config;
 }
 

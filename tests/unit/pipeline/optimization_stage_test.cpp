@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -30,7 +31,7 @@ TrackedFrame frame_with_moving_points(const SimulatedMotion& motion, std::int64_
 }
 
 OdometryConfig config_with(bool moving_consistency) {
-  OdometryConfig config;
+  OdometryConfig config = published_config();
   config.backend.rate_hz = 0.0;
   config.backend.depth.usage = DepthUsage::kWeighted;
   config.backend.initializer.kind = InitializerKind::kInstant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults, recovery and wrong calibration with the shipped stillpoint.toml, on simulated motion: rates over
+// Faults, recovery and wrong calibration with the shipped default, on simulated motion: rates over
 // seeds, which change the noise of all sensors and the fault.
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tests/support/published_config.h"
 #include "tests/support/simulated/sliding_plane.h"
 
 namespace stillpoint {
@@ -38,7 +39,7 @@ void add_turns(TrackingStage& stage) {
 TEST(TrackingStage, KeepsItsFeaturesWhileTheImageIsFrozen) {
   const SlidingPlane plane(kMoving + kFrozen + 2);
   const SensorInput input = plane.input();
-  OdometryConfig config;
+  OdometryConfig config = published_config();
   config.imu.enabled = true;
   config.frontend.min_distance_px = 15;
   config.frontend.prediction = TrackerPrediction::kFull;

@@ -65,8 +65,9 @@ TEST(FrameAnnotator, TintsPixelsNearerThanTheThresholdOfTheirBox) {
   fake.frame.depth.setTo(4000);
   fake.frame.depth(cv::Rect(45, 45, 20, 20)).setTo(1000);  // an object 1 m away before a wall at 4 m
   const std::vector<Box> boxes{{.x_min = 20, .y_min = 20, .x_max = 90, .y_max = 90}};
-  fake.dynamic.mask = SemanticMask(boxes, {fake.frame.depth, 1000.0}, fake.frame.gray.size(),
-                                   DynamicConfig{.epsilon_m = 0.5, .box_margin_px = 0});
+  fake.dynamic.mask =
+      SemanticMask(boxes, {fake.frame.depth, 1000.0}, fake.frame.gray.size(),
+                   DynamicConfig{.mask = DynamicMask::kDepthThreshold, .epsilon_m = 0.5, .box_margin_px = 0});
   ASSERT_EQ(fake.dynamic.mask.boxes().size(), 1u);
   const cv::Mat drawn = FrameAnnotator({}).annotate(fake.report());
   // Center at 1 m, corners at 4 m: the threshold is in the middle, 2.5 m.

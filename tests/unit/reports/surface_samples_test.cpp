@@ -23,8 +23,9 @@ void add_wall(SurfaceSamples& samples, double t_s, OdometryStatus status = Odome
   fake.update.T_w_c.p.x() = 1.0;
   fake.dynamic.labels.push_back({.id = 1, .label = LabelClass::kStable});
   const std::vector<Box> boxes{{.x_min = 38, .y_min = 30, .x_max = 82, .y_max = 90}};
-  fake.dynamic.mask = SemanticMask(boxes, {fake.frame.depth, 1000.0}, fake.frame.gray.size(),
-                                   DynamicConfig{.epsilon_m = 0.5, .box_margin_px = 0});
+  fake.dynamic.mask =
+      SemanticMask(boxes, {fake.frame.depth, 1000.0}, fake.frame.gray.size(),
+                   DynamicConfig{.mask = DynamicMask::kDepthThreshold, .epsilon_m = 0.5, .box_margin_px = 0});
   samples.add(fake.report());
 }
 
