@@ -91,7 +91,9 @@ void PixelNoise::observe(const ReprojectionVariance& variance) {
 }
 
 BackendConfig PixelNoise::applied_to(BackendConfig config) const {
-  config.pixel_sigma_px = std::min(kMaxSigma_px, std::sqrt(std::max(1.0, design_effect_)) * sigma_px_);
+  const double root = std::sqrt(std::max(1.0, design_effect_));
+  config.pixel_sigma_px = root * sigma_px_;
+  config.cauchy_scale /= root;
   return config;
 }
 

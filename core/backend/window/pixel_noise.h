@@ -61,7 +61,7 @@ class ReprojectionErrorMonitor {
 ///
 /// with c = `BackendConfig::pixel_noise_scale`; likewise the white part s_w of the noise, with sqrt(w) in
 /// place of c sqrt(w + K m), and the design effect D. The features of a frame together have the noise
-/// min(sqrt(max(1, D)) s, 9 px).
+/// sqrt(max(1, D)) s; each of them has the noise s, to which the robust loss refers.
 class PixelNoise {
  public:
   /// @param nominal_px s before the first observation
@@ -80,7 +80,8 @@ class PixelNoise {
   [[nodiscard]] double sigma_px() const { return sigma_px_; }
   /// s_w: of the change of an error between successive frames.
   [[nodiscard]] double white_px() const { return white_px_; }
-  /// The configuration with the noise of the features together as `pixel_sigma_px`.
+  /// The configuration with the noise of the features together as `pixel_sigma_px`, and `cauchy_scale` in its
+  /// units.
   [[nodiscard]] BackendConfig applied_to(BackendConfig config) const;
 
  private:

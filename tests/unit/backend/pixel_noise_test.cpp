@@ -104,8 +104,13 @@ TEST(PixelNoise, OfTheOptimizationContainsTheDesignEffect) {
   EXPECT_NEAR(noise.applied_to({}).pixel_sigma_px, 3.0 * std::sqrt(0.5), 1e-6);
   for (int i = 0; i < 200; ++i) noise.observe({.white_px2 = 0.5, .design_effect = 0.5});
   EXPECT_NEAR(noise.applied_to({}).pixel_sigma_px, std::sqrt(0.5), 1e-6) << "at least 1";
-  for (int i = 0; i < 200; ++i) noise.observe({.white_px2 = 50.0, .design_effect = 9.0});
-  EXPECT_NEAR(noise.applied_to({}).pixel_sigma_px, 9.0, 1e-6) << "bounded";
+}
+
+TEST(PixelNoise, LeavesTheRobustLossInPixels) {
+  PixelNoise noise(0.25, 1.0);
+  for (int i = 0; i < 200; ++i) noise.observe({.white_px2 = 0.5, .design_effect = 9.0});
+  const BackendConfig config = noise.applied_to({.cauchy_scale = 0.5});
+  EXPECT_NEAR(config.cauchy_scale * config.pixel_sigma_px, 0.5 * noise.sigma_px(), 1e-6);
 }
 
 TEST(PixelNoise, OfTheChangesIsThatOfTheWhitePart) {
