@@ -79,6 +79,13 @@ void override_rig(SequenceContent& content, const std::filesystem::path& request
 constexpr std::string_view kExampleCamera =
     "camera = { width = 640, height = 480, fx = 535.4, fy = 539.2, cx = 320.1, cy = 247.6 }";
 
+/// Applies the axes of the rig to the samples, once, when all rig files are read. Without them the samples
+/// keep their bits.
+void correct_axes(SequenceInfo& info) {
+  if (info.rig.imu_axes == ImuAxes{}) return;
+  for (ImuSample& sample : info.imu) sample = info.rig.imu_axes.corrected(sample);
+}
+
 void check_rig(const SequenceContent& content) {
   const Camera& camera = content.info.rig.camera;
   const std::string rig_file = companion_file(content.info.folder, "rig.toml").string();
@@ -216,6 +223,7 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   content.raw_depth = options.raw_depth;
   check_rig(content);
   if (&format == &kBagFormat) content = with_metric_accelerations(std::move(content));
+  correct_axes(content.info);
   check_overlap(content.info, faults);
   faults.guard([&content] { require_brightness(content); });
   for (const std::string& finding : imu_unit_findings(content.info))

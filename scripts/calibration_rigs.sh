@@ -6,8 +6,8 @@
 # within 3 claimed deviations, the mean normalized squared error (NEES), and medians of |error|, of the deviation and of
 # the error of the stated values.
 #   scripts/calibration_rigs.sh PROGRAM TABLE.csv SEEDS SEQUENCE...     SEEDS such as "1 2 3"; "" prints TABLE.csv only
-# Of the imperfections of the sensors, depth_scaled and time_offset change true values; the others (noise, blur, bias,
-# scale and axes of the IMU, depth that is not registered) are in no parameter.
+# Of the imperfections of the sensors, depth_scaled, time_offset, gyro_scale, accel_scale and imu_misalignment change true
+# values; the others (noise, blur, bias, g-sensitivity, depth that is not registered) are in no parameter.
 set -euo pipefail
 program="$1" table="$2" seeds="$3"
 shift 3
@@ -15,7 +15,7 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
 keep=()
-for name in focal center distortion rolling_shutter depth_scale depth_intrinsics depth_pose extrinsics time_offset; do
+for name in focal center distortion rolling_shutter depth_scale depth_intrinsics depth_pose extrinsics time_offset imu_intrinsics; do
   keep+=(--keep "$name")
 done
 
@@ -23,9 +23,42 @@ amount() { # FAULT: its amount in the manifest of a run
   grep -o "\"$1:[^\"]*amount=[^,\"]*" "$work/run/manifest.json" | sed 's/.*amount=//'
 }
 
-compare() { # SEQUENCE SEED: rows of the table from true.toml, found.toml and found.json
+mix_bits() { # NUMBER: core/base/content_hash.h
+  local x=$(($1 + 0x9e3779b97f4a7c15))
+  x=$(((x ^ ((x >> 30) & 0x3ffffffff)) * 0xbf58476d1ce4e5b9))
+  x=$(((x ^ ((x >> 27) & 0x1fffffffff)) * 0x94d049bb133111eb))
+  echo $((x ^ ((x >> 31) & 0x1ffffffff)))
+}
+
+signs() { # FAULT DRAW...: the random signs of its seed, by their number (RandomSequence, stream 11)
+  local seed key draw
+  seed="$(grep -o "\"$1:[^\"]*seed=[0-9]*" "$work/run/manifest.json" | sed 's/.*seed=//')"
+  shift
+  key="$(mix_bits "$(mix_bits $((seed ^ (11 << 56))))")"
+  for draw in "$@"; do
+    (($(mix_bits $((key + draw * 0xd1342543de82ef95))) >= 0)) && echo 1 || echo -1
+  done
+}
+
+# "NAME VALUE" of the axes of the inertial sensors: (I + N) (I + S), see datasets/faults/inertial_faults.h.
+true_axes() {
+  paste -d ' ' <(signs gyro_scale 0 4 8 0 4 8) <(signs accel_scale 0 4 8 0 4 8) \
+    <(printf '0\n0\n0\n' && signs imu_misalignment 1 2 5) <(printf '0\n0\n0\n' && signs imu_misalignment 10 11 14) |
+    awk -v gyro="$(amount gyro_scale)" -v accel="$(amount accel_scale)" -v angle="$(amount imu_misalignment)" '
+      { g[NR] = $1 * gyro; a[NR] = $2 * accel; G[NR] = $3 * angle; A[NR] = $4 * angle }
+      END {
+        split("x y z xy xz yz", name, " "); column[4] = 2; column[5] = column[6] = 3
+        for (i = 1; i <= 3; ++i) print "gyro scale " name[i] "," g[i] "\naccel scale " name[i] "," a[i]
+        for (i = 4; i <= 6; ++i)
+          print "gyro axes " name[i] "," G[i] * (1 + g[column[i]] / 100) "\naccel axes " name[i] "," \
+            A[i] * (1 + a[column[i]] / 100)
+      }'
+}
+
+compare() { # SEQUENCE SEED: rows of the table from axes.csv, true.toml, found.toml and found.json
   awk -v sequence="$1" -v seed="$2" -v scale="$(amount depth_scaled)" -v offset="$(amount time_offset)" '
     function numbers(text) { gsub(/[][,]/, " ", text); sub(/#.*/, "", text); return text }
+    FILENAME ~ /csv$/ { split($0, axis_of, ","); truth[axis_of[1]] = axis_of[2]; next }
     FILENAME ~ /toml$/ && / = / {
       which = FILENAME ~ /true.toml$/ ? "true" : "found"
       if ($1 == "T_b_c") { sub(/.*= /, ""); split(numbers($0), m, " "); for (i in m) T[which, i] = m[i]; next }
@@ -54,7 +87,7 @@ compare() { # SEQUENCE SEED: rows of the table from true.toml, found.toml and fo
         error = value - right; wrong = stated - right
       }
       printf "%s,%s,%s,%s,%.6g,%.6g,%.6g,%s\n", sequence, seed, name, unit, error, sigma, wrong, outcome
-    }' "$work/true.toml" "$work/found.toml" "$work/found.json"
+    }' "$work/axes.csv" "$work/true.toml" "$work/found.toml" "$work/found.json"
 }
 
 [[ -e "$table" ]] || echo "sequence,seed,parameter,unit,error,sigma,stated_error,outcome" >"$table"
@@ -66,6 +99,7 @@ for seed in $seeds; do
     "$program" run "$sequence" --fault "rig:seed=$seed" --max-frames 40 --out "$work/run" >/dev/null 2>&1 || true
     if "$program" calibrate "$sequence" --fault "rig:seed=$seed" --json --out "$work/found.toml" \
       >"$work/found.json" 2>"$work/err"; then
+      true_axes >"$work/axes.csv"
       compare "$name" "$seed" >>"$table"
     else
       echo "$name,$seed,,,,,,failed: $(tail -n 1 "$work/err" | tr ',' ';')" >>"$table"

@@ -23,6 +23,11 @@ std::vector<double> numbers_of(const Pose& pose) {
   return {rows.data(), rows.data() + rows.size()};
 }
 
+std::vector<double> numbers_of(const Eigen::Matrix3d& matrix) {
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = matrix;
+  return {rows.data(), rows.data() + rows.size()};
+}
+
 /// Size and intrinsics of a camera.
 void add_camera(const std::string& section, const Camera& camera, std::vector<StatedField>& fields) {
   fields.push_back({section + " width", {static_cast<double>(camera.width)}});
@@ -55,6 +60,8 @@ std::vector<StatedField> stated_fields(const CalibrationInput& input) {
   fields.push_back({"[imu] gyro_walk", {rig.imu_noise.gyro_walk}});
   fields.push_back({"[imu] accel_walk", {rig.imu_noise.accel_walk}});
   fields.push_back({"[imu] time_offset_s", {rig.time_offset_s}});
+  fields.push_back({"[imu] gyro_axes", numbers_of(rig.imu_axes.gyro)});
+  fields.push_back({"[imu] accel_axes", numbers_of(rig.imu_axes.accel)});
   return fields;
 }
 

@@ -61,7 +61,7 @@ std::optional<Eigen::VectorXd> variances(const Linearization& at, const std::vec
 
 std::optional<SharedVector> BatchProblem::deviations() {
   SharedValues& shared = state_.shared;
-  const std::array<std::pair<double*, SharedValue>, 10> shared_blocks = {
+  const std::array<std::pair<double*, SharedValue>, 11> shared_blocks = {
       {{shared.camera.data(), SharedValue::kFx},
        {&shared.readout_s, SharedValue::kReadout},
        {shared.depth.data(), SharedValue::kDepthScale},
@@ -69,6 +69,7 @@ std::optional<SharedVector> BatchProblem::deviations() {
        {shared.T_c_d.data(), SharedValue::kDepthPose},
        {shared.T_b_c.data(), SharedValue::kExtrinsics},
        {&shared.time_offset_s, SharedValue::kTimeOffset},
+       {shared.imu_axes.data(), SharedValue::kImuAxes},
        {&shared.depth_delay_s, SharedValue::kDepthDelay},
        {shared.T_f_b.data(), SharedValue::kTruthPose},
        {&shared.truth_delay_s, SharedValue::kTruthDelay}}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -136,7 +137,8 @@ void BatchProblem::add_truth() {
 void BatchProblem::add_keyframes() {
   const bool inertial = !input_.imu.empty();
   ImuBuffer samples;
-  for (const ImuSample& sample : input_.imu) samples.add(sample);
+  const ImuAxes axes = axes_of(state_.shared.imu_axes);
+  for (const ImuSample& sample : input_.imu) samples.add(axes.corrected(sample));
   for (Eigen::Vector3d& gravity : state_.gravity_w) {
     if (inertial) problem_.AddParameterBlock(gravity.data(), 3, &gravity_manifold_);
   }
@@ -183,10 +185,17 @@ void BatchProblem::add_inertial(ImuBuffer& samples, int first) {
                        .ends = {ImuEnd{offset_s, at_i->gyro_b, at_i->accel_b},
                                 ImuEnd{offset_s, at_j->gyro_b, at_j->accel_b}}});
   const Inertial& added = inertial_.back();
-  imu_factors_.emplace_back(added.imu, added.ends);
+  ImuAxesFactor::Linearization at{.values = state_.shared.imu_axes};
+  if (estimates_imu_axes()) at.jacobian = imu_axes_jacobian(added.imu, noise, at.values);
+  imu_factors_.emplace_back(added.imu, added.ends, at);
   problem_.AddResidualBlock(&imu_factors_.back(), nullptr, i.pose.data(), i.speed_bias.data(), j.pose.data(),
                             j.speed_bias.data(), state_.gravity_w[static_cast<std::size_t>(i.section)].data(),
-                            &state_.shared.time_offset_s);
+                            &state_.shared.time_offset_s, state_.shared.imu_axes.data());
+}
+
+bool BatchProblem::estimates_imu_axes() const {
+  const auto first = options_.is_variable.begin() + index(SharedValue::kImuAxes);
+  return std::any_of(first, first + kImuAxesCount, std::identity{});
 }
 
 /// Makes some numbers of a block constant.
@@ -228,6 +237,8 @@ void BatchProblem::add_shared() {
   add_pose_block(shared.T_b_c.data(), SharedValue::kExtrinsics);
   problem_.AddParameterBlock(&shared.time_offset_s, 1);
   hold(&shared.time_offset_s, 1, constant_of(SharedValue::kTimeOffset, 1));
+  problem_.AddParameterBlock(shared.imu_axes.data(), kImuAxesCount);
+  hold(shared.imu_axes.data(), kImuAxesCount, constant_of(SharedValue::kImuAxes, kImuAxesCount));
   problem_.AddParameterBlock(&shared.depth_delay_s, 1);
   hold(&shared.depth_delay_s, 1, constant_of(SharedValue::kDepthDelay, 1));
 }
@@ -342,6 +353,10 @@ void BatchProblem::add_priors() {
   };
   scalar(&shared.readout_s, stated.readout_s, priors_.rolling_shutter_s);
   scalar(&shared.time_offset_s, stated.time_offset_s, priors_.time_offset_s);
+  Eigen::VectorXd axes(kImuAxesCount);  // of each sensor, three scales and three angles
+  for (int i = 0; i < kImuAxesCount; ++i)
+    axes[i] = 1.0 / (i % 6 < 3 ? priors_.imu_scale : priors_.imu_axes_rad);
+  add_linear_prior(shared.imu_axes.data(), mean(stated.imu_axes), axes.asDiagonal());
   scalar(&shared.depth_delay_s, stated.depth_delay_s, priors_.depth_delay_s);
   add_linear_prior(shared.depth.data(), mean(stated.depth),
                    Eigen::Vector2d(1.0 / priors_.depth_scale, 1.0 / priors_.depth_offset).asDiagonal());
@@ -493,12 +508,13 @@ void BatchProblem::update_imu_noise() {
     const auto first = static_cast<std::size_t>(inertial_[k].first);
     const BatchKeyframe& i = state_.keyframes[first];
     const BatchKeyframe& j = state_.keyframes[first + 1];
-    const std::array<const double*, 6> blocks = {i.pose.data(),
+    const std::array<const double*, 7> blocks = {i.pose.data(),
                                                  i.speed_bias.data(),
                                                  j.pose.data(),
                                                  j.speed_bias.data(),
                                                  state_.gravity_w[static_cast<std::size_t>(i.section)].data(),
-                                                 &state_.shared.time_offset_s};
+                                                 &state_.shared.time_offset_s,
+                                                 state_.shared.imu_axes.data()};
     Vector15 whitened;
     static_cast<void>(imu_factors_[k].Evaluate(blocks.data(), whitened.data(), nullptr));
     const Matrix15& W = inertial_[k].imu.sqrt_information();

@@ -14,9 +14,9 @@
 #include <ceres/problem.h>
 
 #include "core/backend/factors/ceres_manifolds.h"
-#include "core/backend/reference/state_factors.h"
 #include "core/calibration/batch_state.h"
 #include "core/calibration/calibration_factors.h"
+#include "core/calibration/imu_axes_factor.h"
 #include "core/imu/imu_buffer.h"
 
 namespace stillpoint {
@@ -39,7 +39,8 @@ enum class SharedValue : std::uint8_t {
   kDepthPose,                    ///< T_c_d: three of position, three of rotation
   kExtrinsics = kDepthPose + 6,  ///< T_b_c: likewise
   kTimeOffset = kExtrinsics + 6,
-  kDepthDelay,
+  kImuAxes,  ///< as ImuAxesValues
+  kDepthDelay = kImuAxes + kImuAxesCount,
   kTruthPose,  ///< T_f_b: likewise
   kTruthDelay = kTruthPose + 6,
   kCount
@@ -109,6 +110,7 @@ class BatchProblem {
   void add_linear_prior(double* block, const Eigen::VectorXd& mean, const Eigen::MatrixXd& A);
   [[nodiscard]] std::optional<DepthFactor::Measurement> depth_of(const BatchObservation& seen,
                                                                  const Eigen::Vector3d& p_w) const;
+  [[nodiscard]] bool estimates_imu_axes() const;
   [[nodiscard]] bool is_variable(SharedValue value) const {
     return options_.is_variable[static_cast<std::size_t>(value)];
   }
@@ -131,7 +133,7 @@ class BatchProblem {
   std::deque<PixelFactor> pixel_factors_;
   std::deque<DepthFactor> depth_factors_;
   std::deque<Inertial> inertial_;
-  std::deque<ImuFactor> imu_factors_;
+  std::deque<ImuAxesFactor> imu_factors_;
   std::deque<LinearPriorFactor> linear_priors_;
   std::deque<PosePrior> pose_priors_;
   std::deque<TruthFactor> truth_factors_;

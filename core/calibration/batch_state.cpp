@@ -52,6 +52,8 @@ RigCalibration rig_calibration(const SharedValues& shared, const RigCalibration&
   result.rig.depth_units_per_m = stated.rig.depth_units_per_m * shared.depth[0];
   result.rig.T_b_c = pose_of(shared.T_b_c);
   result.rig.time_offset_s = shared.time_offset_s;
+  const ImuAxes axes = axes_of(shared.imu_axes);
+  result.rig.imu_axes = {stated.rig.imu_axes.gyro * axes.gyro, stated.rig.imu_axes.accel * axes.accel};
   result.depth_offset = shared.depth[1];
   result.depth_camera.fx = shared.depth_camera[0];
   result.depth_camera.fy = shared.depth_camera[1];

@@ -10,6 +10,7 @@
 #include "core/calibration/calibrate.h"
 #include "core/calibration/calibration_factors.h"
 #include "core/calibration/depth_edges.h"
+#include "core/calibration/imu_axes_factor.h"
 
 namespace stillpoint {
 
@@ -24,6 +25,7 @@ struct SharedValues {
   std::array<double, 4> depth_camera{};
   PoseValues T_b_c{}, T_c_d{};
   double time_offset_s = 0.0;
+  ImuAxesValues imu_axes{};  ///< relative to the stated ones
   double depth_delay_s = 0.0;
   PoseValues T_f_b{};  ///< with the next: of the ground truth, see TruthFactor
   double truth_delay_s = 0.0;

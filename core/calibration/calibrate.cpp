@@ -67,6 +67,18 @@ constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"T_b_c rotation y", "deg", kDegrees, 3e-4},
     {"T_b_c rotation z", "deg", kDegrees, 3e-4},
     {"time_offset_s", "ms", 1e3, 2e-4},
+    {"gyro scale x", "%", 1e2, 5e-4},
+    {"gyro scale y", "%", 1e2, 5e-4},
+    {"gyro scale z", "%", 1e2, 5e-4},
+    {"gyro axes xy", "deg", kDegrees, 3e-4},
+    {"gyro axes xz", "deg", kDegrees, 3e-4},
+    {"gyro axes yz", "deg", kDegrees, 3e-4},
+    {"accel scale x", "%", 1e2, 5e-4},
+    {"accel scale y", "%", 1e2, 5e-4},
+    {"accel scale z", "%", 1e2, 5e-4},
+    {"accel axes xy", "deg", kDegrees, 3e-4},
+    {"accel axes xz", "deg", kDegrees, 3e-4},
+    {"accel axes yz", "deg", kDegrees, 3e-4},
     {"depth delay", "ms", 1e3, 1e-3},
     {"truth T_f_b x", "mm", 1e3, 1e-3},
     {"truth T_f_b y", "mm", 1e3, 1e-3},
@@ -114,6 +126,7 @@ SharedFlags variable_values(const CalibrationSwitches& estimate, const Calibrati
   set(flags, kDepthDelay, 1, estimate.depth_pose && !input.depth_is_registered);
   set(flags, kExtrinsics, 6, estimate.extrinsics && inertial);
   set(flags, kTimeOffset, 1, estimate.time_offset && inertial);
+  set(flags, kImuAxes, kImuAxesCount, estimate.imu_intrinsics && inertial);
   set(flags, kTruthPose, 7, has_truth);
   return flags;
 }
@@ -132,6 +145,7 @@ SharedVector vector_of(const SharedValues& shared, const RigCalibration& stated)
   add_pose(kDepthPose, pose_of(shared.T_c_d), stated.T_c_d);
   add_pose(kExtrinsics, pose_of(shared.T_b_c), stated.rig.T_b_c);
   v[static_cast<int>(kTimeOffset)] = shared.time_offset_s;
+  std::ranges::copy(shared.imu_axes, v.data() + static_cast<int>(kImuAxes));
   v[static_cast<int>(kDepthDelay)] = shared.depth_delay_s;
   add_pose(kTruthPose, pose_of(shared.T_f_b), Pose{});
   v[static_cast<int>(kTruthDelay)] = shared.truth_delay_s;
@@ -140,13 +154,15 @@ SharedVector vector_of(const SharedValues& shared, const RigCalibration& stated)
 
 SharedVector prior_sigmas(const CalibrationPriors& priors, const RigCalibration& stated) {
   SharedVector s;
+  Eigen::Matrix<double, 6, 1> axes;
+  axes << Eigen::Vector3d::Constant(priors.imu_scale), Eigen::Vector3d::Constant(priors.imu_axes_rad);
   const Camera& camera = stated.rig.camera;
   s << priors.focal * camera.fx, priors.focal * camera.fy, priors.center_px, priors.center_px,
       priors.distortion, priors.distortion, priors.rolling_shutter_s, priors.depth_scale, priors.depth_offset,
       priors.depth_focal * stated.depth_camera.fx, priors.depth_focal * stated.depth_camera.fy,
       priors.depth_center_px, priors.depth_center_px, Eigen::Vector3d::Constant(priors.lever_m),
       Eigen::Vector3d::Constant(priors.rotation_rad), Eigen::Vector3d::Constant(priors.lever_m),
-      Eigen::Vector3d::Constant(priors.rotation_rad), priors.time_offset_s, priors.depth_delay_s,
+      Eigen::Vector3d::Constant(priors.rotation_rad), priors.time_offset_s, axes, axes, priors.depth_delay_s,
       Eigen::Vector3d::Constant(priors.truth_position_m),
       Eigen::Vector3d::Constant(priors.truth_rotation_rad), priors.truth_delay_s;
   return s;
@@ -172,7 +188,8 @@ class Rounds {
     for (double* const sigma :
          {&p.focal, &p.focal_ratio, &p.center_px, &p.distortion, &p.rolling_shutter_s, &p.depth_scale,
           &p.depth_offset, &p.depth_focal, &p.depth_center_px, &p.rotation_rad, &p.lever_m, &p.time_offset_s,
-          &p.depth_delay_s, &p.truth_rotation_rad, &p.truth_position_m, &p.truth_delay_s})
+          &p.imu_scale, &p.imu_axes_rad, &p.depth_delay_s, &p.truth_rotation_rad, &p.truth_position_m,
+          &p.truth_delay_s})
       *sigma /= factor;
   }
 
@@ -352,7 +369,7 @@ class Calibration {
         priors_(prior_sigmas(options.priors, input.stated)),
         is_variable_(variable_values(options.estimate, input)) {
     rounds_.set_steps((options.hold_out ? 3 * rounds_.count() + 2 * kRounds : rounds_.count()) + 1 +
-                      kRoundsAfterHalves);
+                      kRoundsAfterHalves + 1);
   }
 
   [[nodiscard]] CalibrationResult run() {
@@ -362,6 +379,7 @@ class Calibration {
     const SharedFlags wanted = is_variable_;
     estimate_all();
     if (options_.hold_out && !rounds_.interrupted() && solution_.sigmas) estimate_halves();
+    set_back_axes();
     describe();
     list_parameters(wanted);
     return std::move(result_);
@@ -404,6 +422,22 @@ class Calibration {
     update_deviations();
     if (solution_.sigmas)
       observed_ = observed_values(result_.deviation_factor * *solution_.sigmas, priors_, observed_);
+  }
+
+  /// Axes of the inertial sensors that are not observed get the stated values, in one more round. The
+  /// deviations of the other values are those before it: they contain the errors of the stated axes, by their
+  /// priors.
+  void set_back_axes() {
+    if (!solution_.sigmas || rounds_.interrupted()) return;
+    bool changed = false;
+    for (std::size_t i = 0; i < std::size_t{kImuAxesCount}; ++i) {
+      const std::size_t value = static_cast<std::size_t>(kImuAxes) + i;
+      if (!is_variable_[value] || observed_[value]) continue;
+      is_variable_[value] = false;
+      solution_.state.shared.imu_axes[i] = 0.0;
+      changed = true;
+    }
+    if (changed) rounds_.run_round(solution_, is_variable_, rounds_.count());
   }
 
   void describe() {

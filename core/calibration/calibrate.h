@@ -17,6 +17,10 @@
 /// integrate the inertial samples again at the new biases and time offset. The first round uses fixed
 /// deviations and Cauchy losses.
 ///
+/// Each inertial sensor measures A (I + U) x + bias of a true value x, with the stated A (see ImuAxes). U is
+/// upper triangular: three relative scales on its diagonal, three angles above it. The three angles below it
+/// of one sensor are those of the body frame, which T_b_c contains; of both sensors they are taken as equal.
+///
 /// Standard deviations: with the Jacobian J of all weighted residuals r, x = (J^T J)^-1 e_p is the gain of
 /// the parameter p. Residuals of a landmark l are correlated, as tracking errors last for many frames and
 /// keyframes are close; those of different landmarks are taken as independent, as is all other data (o). The
@@ -34,6 +38,10 @@
 ///
 /// over the observed parameters p, and the whole is solved again with data of such larger deviations against
 /// the priors. What both halves have in common is added as a constant per parameter, see calibrate.cpp.
+///
+/// Values that are not observed get the stated ones, and the others are estimated once more: with deviations
+/// as if the stated ones were true, but for axes of inertial sensors, which are off by their priors even in
+/// good rigs.
 #pragma once
 
 #include <cstddef>
@@ -71,6 +79,7 @@ struct CalibrationSwitches {
   bool depth_pose = true;        ///< and the delay of its images
   bool extrinsics = true;        ///< with inertial data only, as the next
   bool time_offset = true;
+  bool imu_intrinsics = true;  ///< scale and misalignment of gyroscope and accelerometer
 };
 
 /// Standard deviations of stated values: by what rigs are off whose calibration is a drawing, a data sheet or
@@ -88,6 +97,8 @@ struct CalibrationPriors {
   double rotation_rad = 0.035;  ///< 2 deg; of T_b_c and T_c_d
   double lever_m = 0.03;
   double time_offset_s = 0.02;
+  double imu_scale = 0.01;       ///< relative
+  double imu_axes_rad = 0.0087;  ///< 0.5 deg; of each angle of misalignment
   double depth_delay_s = 0.02;
   double truth_rotation_rad = 0.5;
   double truth_position_m = 1.0;

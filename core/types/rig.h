@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include "core/base/timestamp.h"
 #include "core/geometry/camera.h"
@@ -27,6 +28,24 @@ struct ImuNoise {
   bool operator==(const ImuNoise&) const = default;
 };
 
+/// Scale and alignment of the axes of the inertial sensors: of a true value x in the body frame a sensor
+/// measures
+///
+///   A x + bias + noise
+///
+/// with the scales on the diagonal of A, and angles [rad] beside it.
+struct ImuAxes {
+  Eigen::Matrix3d gyro = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d accel = Eigen::Matrix3d::Identity();
+
+  bool operator==(const ImuAxes&) const = default;
+
+  /// A^-1 times both measurements.
+  [[nodiscard]] ImuSample corrected(const ImuSample& measured) const {
+    return {measured.t, gyro.inverse() * measured.gyro_b, accel.inverse() * measured.accel_b};
+  }
+};
+
 /// Ratio of the noise densities with which inertial data is used to the stated ones.
 struct ImuNoiseFactors {
   double gyro = 1.0;
@@ -46,6 +65,7 @@ struct Rig {
   bool has_imu = false;
   Pose T_b_c;  ///< camera to body; identity if there is no IMU
   ImuNoise imu_noise;
+  ImuAxes imu_axes;                ///< by which the samples of a sequence were corrected when it was read
   double time_offset_s = 0.0;      ///< IMU time of an exposure minus the timestamp of its image
   double rolling_shutter_s = 0.0;  ///< readout time from the first to the last row; 0 = global shutter
 };

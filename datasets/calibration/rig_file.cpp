@@ -17,6 +17,12 @@
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::datasets {
+
+bool are_plausible_axes(const Eigen::Matrix3d& axes) {
+  constexpr double kMostDifference = 0.2;
+  return (axes - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kMostDifference;
+}
+
 namespace {
 
 /// One table of the file; every access checks type and range.
@@ -174,6 +180,21 @@ Pose pose_of(const Section& section, std::string_view key) {
   return *pose;
 }
 
+/// Axes of an inertial sensor.
+Eigen::Matrix3d axes_of(const Section& section, std::string_view key, const Eigen::Matrix3d& fallback) {
+  const toml::node* const node = section.find(key);
+  if (node == nullptr) return fallback;
+  const std::vector<double> values = section.numbers(*node, key);
+  if (values.size() != 9) section.fail(*node, key, "must have 9 numbers (3x3, row-major)");
+  const Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+  if (!are_plausible_axes(axes))
+    section.fail(
+        *node, key,
+        "must be within 0.2 of the identity matrix: relative scales beside 1 on the diagonal, angles in "
+        "radians beside it");
+  return axes;
+}
+
 /// The camera of depth images that are not registered; must be given completely.
 std::optional<DepthCamera> depth_camera_of(const Section& depth) {
   depth.allow_only({"scale", "width", "height", "fx", "fy", "cx", "cy", "T_c_d"});
@@ -197,7 +218,8 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
   const Section camera = section(file.string(), root, "camera");
   const Section depth = section(file.string(), root, "depth");
   const Section imu = section(file.string(), root, "imu");
-  imu.allow_only({"T_b_c", "gyro_noise", "accel_noise", "gyro_walk", "accel_walk", "time_offset_s"});
+  imu.allow_only({"T_b_c", "gyro_noise", "accel_noise", "gyro_walk", "accel_walk", "time_offset_s",
+                  "gyro_axes", "accel_axes"});
 
   OverriddenRig result{.rig = rig,
                        .has_extrinsic = imu.find("T_b_c") != nullptr,
@@ -216,6 +238,8 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
                                   .gyro_walk = imu.positive("gyro_walk", rig.imu_noise.gyro_walk),
                                   .accel_walk = imu.positive("accel_walk", rig.imu_noise.accel_walk)};
   result.rig.time_offset_s = imu.number("time_offset_s", rig.time_offset_s);
+  result.rig.imu_axes = {.gyro = axes_of(imu, "gyro_axes", rig.imu_axes.gyro),
+                         .accel = axes_of(imu, "accel_axes", rig.imu_axes.accel)};
   require_complete(camera, rig.camera);
   return result;
 }

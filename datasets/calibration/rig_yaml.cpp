@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "core/base/error.h"
 #include "datasets/io/lens_model.h"
 #include "datasets/io/sensor_yaml.h"
@@ -70,6 +72,7 @@ class YamlRig {
   void read_orb_slam(const SensorYaml& yaml);
   void read_vins(const SensorYaml& yaml);
   void read_kalibr_camera(const SensorYaml& camera);
+  void read_kalibr_axes(const SensorYaml& imu);
   void read_size(const SensorYaml& yaml, Camera& camera) const;
 
   void note(const std::string& text) { result_.notes.push_back(text); }
@@ -112,8 +115,37 @@ void YamlRig::read_kalibr(const SensorYaml& yaml) {
   }
   const bool nested = yaml.has("imu0") && yaml.child("imu0").has("gyroscope_noise_density");
   if (!nested && !yaml.has("gyroscope_noise_density")) return;
-  result_.rig.imu_noise = nested ? yaml.child("imu0").imu_noise() : yaml.imu_noise();
+  const SensorYaml imu = nested ? yaml.child("imu0") : yaml;
+  result_.rig.imu_noise = imu.imu_noise();
   note("noise densities");
+  read_kalibr_axes(imu);
+}
+
+/// Measured acceleration: M a + bias; measured rate: M C_gyro_i w + A a + bias.
+void YamlRig::read_kalibr_axes(const SensorYaml& imu) {
+  const auto matrix = [](const SensorYaml& sensor, const std::string& key) -> Eigen::Matrix3d {
+    const std::vector<double> values = sensor.numbers(key);
+    if (values.size() != 9) sensor.fail(key, "must have 9 numbers (3x3)");
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+  };
+  const auto set = [this](const SensorYaml& sensor, const Eigen::Matrix3d& axes, Eigen::Matrix3d& to) {
+    if (!are_plausible_axes(axes))
+      sensor.fail("M", "is not within 0.2 of the identity matrix: turned axes are not supported");
+    to = axes;
+  };
+  if (imu.has("accelerometers") && imu.child("accelerometers").has("M")) {
+    const SensorYaml sensor = imu.child("accelerometers");
+    set(sensor, matrix(sensor, "M"), result_.rig.imu_axes.accel);
+    note("axes of the accelerometer");
+  }
+  if (!imu.has("gyroscopes") || !imu.child("gyroscopes").has("M")) return;
+  const SensorYaml sensor = imu.child("gyroscopes");
+  Eigen::Matrix3d axes = matrix(sensor, "M");
+  if (sensor.has("C_gyro_i")) axes = axes * matrix(sensor, "C_gyro_i");
+  set(sensor, axes, result_.rig.imu_axes.gyro);
+  note("axes of the gyroscope");
+  if (sensor.has("A") && !matrix(sensor, "A").isZero(0.0))
+    note("the influence A of accelerations on the gyroscope is not read");
 }
 
 /// Spellings of OpenCV: with or without underscores, in several versions of its calibration program.

@@ -63,6 +63,34 @@ std::string comments(const std::vector<std::pair<std::string_view, double>>& val
   return text;
 }
 
+/// A 3x3 matrix as a list of rows, of a sensor of imu0.
+std::string sensor_matrix(const std::string& key, const Eigen::Matrix3d& matrix) {
+  std::string text = "    " + key + ":\n";
+  for (int row = 0; row < 3; ++row)
+    text +=
+        fmt::format("    - [{:.17g}, {:.17g}, {:.17g}]\n", matrix(row, 0), matrix(row, 1), matrix(row, 2));
+  return text;
+}
+
+/// The model "scale-misalignment" of Kalibr, whose gyroscope may be turned in the IMU.
+std::string kalibr_axes(const ImuAxes& axes) {
+  if (axes == ImuAxes{}) return "";
+  return "  model: scale-misalignment\n  accelerometers:\n" + sensor_matrix("M", axes.accel) +
+         "  gyroscopes:\n" + sensor_matrix("M", axes.gyro) + sensor_matrix("A", Eigen::Matrix3d::Zero()) +
+         sensor_matrix("C_gyro_i", Eigen::Matrix3d::Identity());
+}
+
+/// Axes as comments of the formats that do not have them.
+std::string axes_comments(const ImuAxes& axes) {
+  if (axes == ImuAxes{}) return "";
+  std::string text;
+  for (const auto& [key, matrix] : {std::pair("gyro_axes", axes.gyro), std::pair("accel_axes", axes.accel)}) {
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = matrix;
+    text += fmt::format("# not in this format: {} = {}\n", key, numbers(std::span(rows.data(), 9)));
+  }
+  return text;
+}
+
 std::string kalibr_text(const Rig& rig, bool openvins) {
   const Camera& camera = rig.camera;
   std::string text =
@@ -78,12 +106,14 @@ std::string kalibr_text(const Rig& rig, bool openvins) {
       is_fisheye(camera) ? "equidistant" : "radtan",
       numbers(four_coefficients(camera, openvins ? "openvins" : "kalibr")), camera.width, camera.height);
   if (!rig.has_imu) return text;
-  return text + fmt::format(
-                    "  timeshift_cam_imu: {:.17g}\nimu0:\n  gyroscope_noise_density: {:.17g}\n"
-                    "  gyroscope_random_walk: {:.17g}\n  accelerometer_noise_density: {:.17g}\n"
-                    "  accelerometer_random_walk: {:.17g}\n",
-                    rig.time_offset_s, rig.imu_noise.gyro_noise, rig.imu_noise.gyro_walk,
-                    rig.imu_noise.accel_noise, rig.imu_noise.accel_walk);
+  return text +
+         fmt::format(
+             "  timeshift_cam_imu: {:.17g}\nimu0:\n  gyroscope_noise_density: {:.17g}\n"
+             "  gyroscope_random_walk: {:.17g}\n  accelerometer_noise_density: {:.17g}\n"
+             "  accelerometer_random_walk: {:.17g}\n",
+             rig.time_offset_s, rig.imu_noise.gyro_noise, rig.imu_noise.gyro_walk, rig.imu_noise.accel_noise,
+             rig.imu_noise.accel_walk) +
+         (openvins ? "" : kalibr_axes(rig.imu_axes));
 }
 
 std::string opencv_text(const Rig& rig) {
@@ -172,13 +202,13 @@ std::string rig_text(const Rig& rig, RigFormat format) {
     case RigFormat::kKalibr:
       return kalibr_text(rig, false);
     case RigFormat::kOpenvins:
-      return head + kalibr_text(rig, true);
+      return head + kalibr_text(rig, true) + axes_comments(rig.imu_axes);
     case RigFormat::kOpencv:
-      return head + opencv_text(rig);
+      return head + opencv_text(rig) + axes_comments(rig.imu_axes);
     case RigFormat::kOrbSlam:
-      return head + orb_slam_text(rig);
+      return head + orb_slam_text(rig) + axes_comments(rig.imu_axes);
     case RigFormat::kVins:
-      return head + vins_text(rig);
+      return head + vins_text(rig) + axes_comments(rig.imu_axes);
   }
   STILLPOINT_CHECK(false && "a format without writer");
   return {};

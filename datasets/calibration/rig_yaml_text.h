@@ -21,8 +21,9 @@ constexpr auto enum_names(RigFormat) {
 
 /// A calibration in the format of a program; numbers are exact, values that the format does not have are in
 /// comments. `kStillpoint` is `rig_file_text`. One file contains camera and IMU, with the keys of:
-/// - Kalibr: cam0 and imu0; T_cam_imu takes the IMU to the camera (T_c_b). OpenVINS: the same with T_imu_cam
-///   (T_b_c).
+/// - Kalibr: cam0 and imu0; T_cam_imu takes the IMU to the camera (T_c_b); axes as the model
+/// scale-misalignment.
+///   OpenVINS: the same with T_imu_cam (T_b_c), without axes.
 /// - OpenCV: camera_matrix and distortion_coefficients of the camera alone.
 /// - ORB-SLAM3: Camera1.fx ..., IMU.T_b_c1, noise densities, RGBD.DepthMapFactor.
 /// - VINS: projection_parameters, body_T_cam0 (VINS-Fusion) and extrinsicRotation, extrinsicTranslation

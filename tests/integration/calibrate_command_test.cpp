@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "eval/io/text_reader.h"
 #include "tests/support/program.h"
 #include "tests/support/sequences/rendered_sequence.h"
 
@@ -50,6 +51,7 @@ TEST(CalibrateCommand, FindsAWrongFocalLengthAndWritesARigFile) {
   EXPECT_LT(std::abs(fx["value"].get<double>() - truth), 3.0 * fx["sigma"].get<double>());
   EXPECT_LT(std::abs(fx["value"].get<double>() - truth), 0.01 * truth);
 
+  EXPECT_NE(eval::read_text_file(rig).find("\ngyro_axes = ["), std::string::npos);
   // The rig file is complete: with it the fault of the stated calibration is gone.
   const ProgramResult again = run_program(calibrate_with({"--json", "--rig", rig.string()}));
   ASSERT_EQ(again.exit_code, 0) << again.err;

@@ -56,7 +56,7 @@ struct NamedSwitch {
   std::string_view name;
   bool CalibrationSwitches::*value;
 };
-constexpr std::array<NamedSwitch, 9> kSwitches = {
+constexpr std::array<NamedSwitch, 10> kSwitches = {
     {{"focal", &CalibrationSwitches::focal},
      {"center", &CalibrationSwitches::center},
      {"distortion", &CalibrationSwitches::distortion},
@@ -65,7 +65,8 @@ constexpr std::array<NamedSwitch, 9> kSwitches = {
      {"depth_intrinsics", &CalibrationSwitches::depth_intrinsics},
      {"depth_pose", &CalibrationSwitches::depth_pose},
      {"extrinsics", &CalibrationSwitches::extrinsics},
-     {"time_offset", &CalibrationSwitches::time_offset}}};
+     {"time_offset", &CalibrationSwitches::time_offset},
+     {"imu_intrinsics", &CalibrationSwitches::imu_intrinsics}}};
 
 std::string switch_names() {
   std::string names;

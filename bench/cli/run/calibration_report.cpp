@@ -159,6 +159,14 @@ class RigLines {
     }
     text_ += fmt::format("{} = [{:.17g}]\n", key, fmt::join(rows.data(), rows.data() + 16, ", "));
   }
+  /// Axes of a sensor: "gyro" or "accel".
+  void add_axes(const std::string& sensor, const Eigen::Matrix3d& axes) {
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = axes;
+    for (const ParameterEstimate& p : result_.parameters) {
+      if (p.name.starts_with(sensor + " ")) text_ += fmt::format("# {}: {}\n", p.name, comment(p));
+    }
+    text_ += fmt::format("{}_axes = [{:.17g}]\n", sensor, fmt::join(rows.data(), rows.data() + 9, ", "));
+  }
   void add_text(const std::string& key, const std::string& value, const std::string& parameter = "") {
     const auto found = std::ranges::find(result_.parameters, parameter, &ParameterEstimate::name);
     text_ += fmt::format("{} = {}{}\n", key, value,
@@ -231,6 +239,8 @@ std::string calibrated_rig_text(const CalibrationSubject& subject, const Calibra
   lines.add("gyro_walk", rig.imu_noise.gyro_walk);
   lines.add("accel_walk", rig.imu_noise.accel_walk);
   lines.add("time_offset_s", rig.time_offset_s);
+  lines.add_axes("gyro", rig.imu_axes.gyro);
+  lines.add_axes("accel", rig.imu_axes.accel);
   return lines.text();
 }
 

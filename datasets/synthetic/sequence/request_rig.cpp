@@ -73,6 +73,7 @@ Rig rig_of(const SynthRequest& request) {
   rig.depth_units_per_m = request.depth.units_per_m;
   rig.has_imu = request.layout == SequenceLayout::kOpenLoris;
   rig.imu_noise = request.imu.noise;
+  rig.imu_axes = {};            // those of the rendered samples are exact
   rig.time_offset_s = 0.0;      // a rendered delay is not part of the calibration that is written,
   rig.rolling_shutter_s = 0.0;  // nor is the read-out time
   return rig;

@@ -96,6 +96,23 @@ TEST(RigFile, TypeAndRangeErrorsNameTheLine) {
   expect_rejected("camera = 3\n", {"rig.toml:1", "must be a table"});
 }
 
+TEST(RigFile, ReadsTheAxesOfTheInertialSensors) {
+  const TemporaryFolder folder;
+  Rig before;
+  before.imu_axes.gyro(0, 0) = 1.02;
+  const auto read = [&](const std::string& text) {
+    return apply_rig_file(folder.write("rig.toml", text), before).rig.imu_axes;
+  };
+  const ImuAxes axes = read("[imu]\naccel_axes = [1.01, 0.002, 0.003, 0, 0.99, 0.004, 0, 0, 1]\n");
+  EXPECT_EQ(axes.accel, (Eigen::Matrix3d{{1.01, 0.002, 0.003}, {0.0, 0.99, 0.004}, {0.0, 0.0, 1.0}}));
+  EXPECT_EQ(axes.gyro, before.imu_axes.gyro);
+  expect_rejected("[imu]\ngyro_axes = [1, 1, 1]\n", {"rig.toml:2", "\"gyro_axes\"", "9 numbers"});
+  expect_rejected("[imu]\ngyro_axes = [0,0,0, 0,0,0, 0,0,0]\n", {"rig.toml:2", "\"gyro_axes\"", "identity"});
+  expect_rejected("[imu]\naccel_axes = [1,0.3,0, 0,1,0, 0,0,1]\n",
+                  {"rig.toml:2", "\"accel_axes\"", "identity"});
+  expect_rejected("[imu]\naccel_axes = [nan,0,0, 0,1,0, 0,0,1]\n", {"rig.toml:2", "finite"});
+}
+
 TEST(RigFile, ACameraThatTheFormatDoesNotKnowMustBeComplete) {
   expect_rejected("\n[camera]\nwidth = 640\nheight = 480\nfx = 500\nfy = 500\ncx = 320\n",
                   {"rig.toml:2", "\"cy\" is missing"});

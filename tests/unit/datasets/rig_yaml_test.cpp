@@ -54,6 +54,27 @@ TEST(RigYaml, ReadsTheChainOfKalibrWithTheDirectionOfItsTransform) {
             (ImuNoise{.gyro_noise = 0.004, .accel_noise = 0.02, .gyro_walk = 0.0005, .accel_walk = 0.003}));
 }
 
+TEST(RigYaml, ReadsAndWritesTheAxesOfKalibr) {
+  const std::string accel =
+      "accelerometers:\n  M:\n  - [1.01, 0, 0]\n  - [0.002, 0.99, 0]\n  - [0, 0.003, 1]\n";
+  const std::string gyro = "gyroscopes:\n  M: [[1.02, 0, 0], [0, 1, 0], [0, 0, 1]]\n";
+  const std::string turned = "  C_gyro_i: [[1, 0.01, 0], [-0.01, 1, 0], [0, 0, 1]]\n";
+  const ImuAxes axes = rig_of(kKalibrImu + accel + gyro + turned).rig.imu_axes;
+  EXPECT_EQ(axes.accel, (Eigen::Matrix3d{{1.01, 0, 0}, {0.002, 0.99, 0}, {0, 0.003, 1}}));
+  EXPECT_TRUE(axes.gyro.isApprox(Eigen::Matrix3d{{1.02, 0.0102, 0}, {-0.01, 1, 0}, {0, 0, 1}}));
+  expect_refused(kKalibrImu + "gyroscopes:\n  M: [1, 0]\n", {"gyroscopes.M", "9 numbers"});
+  expect_refused(kKalibrImu + gyro + "  C_gyro_i: [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]\n",
+                 {"gyroscopes.M", "identity"});
+  Rig rig;
+  rig.camera = {.width = 8, .height = 6, .fx = 5, .fy = 5, .cx = 4, .cy = 3};
+  rig.has_imu = true;
+  EXPECT_EQ(rig_text(rig, RigFormat::kKalibr).find("gyroscopes"), std::string::npos);
+  rig.imu_axes = axes;
+  EXPECT_EQ(rig_of(rig_text(rig, RigFormat::kKalibr)).rig.imu_axes, axes);
+  EXPECT_NE(rig_text(rig, RigFormat::kVins).find("# not in this format: gyro_axes = [1.02"),
+            std::string::npos);
+}
+
 TEST(RigYaml, ReadsTheInverseTransformOfOpenVinsAndOfEuroc) {
   for (const std::string& key : {std::string("T_imu_cam"), std::string("T_BS")}) {
     const Pose T_b_c = rig_of("cam0:\n  " + key + ":\n" + kTransform + kKalibrCamera).rig.T_b_c;

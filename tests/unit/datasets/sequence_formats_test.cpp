@@ -126,6 +126,26 @@ TEST(TumFormat, ReadsAnImuIfTheRigFileHasTheExtrinsic) {
   EXPECT_EQ(stream->info().imu[0].accel_b, Eigen::Vector3d(4, 5, 6));
 }
 
+TEST(TumFormat, TheAxesOfARigFileCorrectTheSamplesOnce) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  folder.write("imu.txt", "0.9 1 2 3 4 5 6\n1.2 1 2 3 4 5 6\n");
+  const std::string rig =
+      "[camera]\nwidth = 8\nheight = 6\nfx = 10\nfy = 10\ncx = 3.5\ncy = 2.5\n[imu]\n"
+      "T_b_c = [1,0,0,0.5, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n";
+  folder.write("rig.toml",
+               rig + "gyro_axes = [1.1,0,0, 0,1,0, 0,0,1]\naccel_axes = [1,0,0.1, 0,1,0, 0,0,1.2]\n");
+  const auto first = [&](const std::filesystem::path& file) {
+    return open_sequence(folder.path(), {.format = "tum", .rig_file = file})->info().imu.front();
+  };
+  EXPECT_TRUE(first({}).gyro_b.isApprox(Eigen::Vector3d(1.0 / 1.1, 2.0, 3.0)));
+  EXPECT_TRUE(first({}).accel_b.isApprox(Eigen::Vector3d(3.5, 5.0, 5.0)));
+  // A file that is requested replaces the axes of the folder; identities keep the bits.
+  const auto exact = folder.write("exact.toml", rig + "gyro_axes = [1,0,0, 0,1,0, 0,0,1]\n");
+  EXPECT_EQ(first(exact).gyro_b, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(first(exact).accel_b.isApprox(Eigen::Vector3d(3.5, 5.0, 5.0)));
+}
+
 /// Depth images of 4x3 beside color images of 8x6 with twice the focal length.
 TEST(TumFormat, RegistersDepthOfAnotherCameraIfTheRigFileHasThatCamera) {
   const TemporaryFolder folder;
