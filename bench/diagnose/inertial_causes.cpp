@@ -25,6 +25,7 @@ constexpr double kLeastLag_s =
 constexpr double kSignificant = 4.0;  ///< standard deviations
 constexpr double kOtherAxes = 0.7;    ///< residual without permutation of axes, else they are right
 constexpr double kRightAxes = 0.2;    ///< residual of axes that are right, up to a few degrees
+constexpr double kAsGood = 1.05;      ///< residual of axes that the motion does not tell from the best ones
 constexpr double kBetterAxes = 0.6;   ///< residual with it, relative to that without
 constexpr double kLeastRate = 0.02;   ///< of the rotation that tells the unit [rad/s]
 constexpr double kLeastAngle_rad = 1.0 * kDegree;
@@ -104,6 +105,14 @@ Cause axes_cause(const Eigen::Matrix3d& P, PermutedSensor sensor, const std::str
           }}};
 }
 
+Cause accel_axes_cause(const AccelerometerAxes& axes) {
+  return axes_cause(
+      axes.P, PermutedSensor::kAccel,
+      fmt::format("the accelerometer follows the motion {} with a correlation of {:.2f}, "
+                  "{:.2f} with it",
+                  axes.by_truth ? "of the ground truth" : "between images", axes.stated, axes.correlation));
+}
+
 std::string matrix_text(const Pose& pose) {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
   return fmt::format("[{:.5g}]", fmt::join(rows.data(), rows.data() + 16, ", "));
@@ -122,7 +131,6 @@ Cause extrinsics_cause(const std::string& id, const std::string& name, const std
 /// The simplest permutation by whose residual no other one is clearly better: axes without rotation do not
 /// tell their order. All signs inverted, then single signs, swapped axes, and those with other signs.
 Eigen::Matrix3d simplest_permutation(const std::function<double(const Eigen::Matrix3d&)>& residual_with) {
-  constexpr double kAsGood = 1.05;
   const auto& all = axis_permutations();
   std::array<double, 48> residuals{};
   std::ranges::transform(all, residuals.begin(), residual_with);
@@ -144,9 +152,10 @@ Eigen::Matrix3d simplest_permutation(const std::function<double(const Eigen::Mat
 /// follow the images much better than with the stated calibration.
 /// @param at_offsets pairs at the stated time offset, and at that which fits best with any rotation: half a
 /// period of a vibration later a gyroscope with inverted axes looks right
-/// @param accel_is_right whether the accelerometer follows the images with the stated axes
+/// @param accel other axes that the accelerometer has
 std::vector<Cause> axes_causes(const datasets::SequenceInfo& info,
-                               const std::array<std::vector<RatePair>, 2>& at_offsets, bool accel_is_right) {
+                               const std::array<std::vector<RatePair>, 2>& at_offsets,
+                               const std::optional<AccelerometerAxes>& accel) {
   const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
   const auto residual = [&](const Eigen::Matrix3d& R) {
     return std::min(relative_residual(at_offsets[0], R), relative_residual(at_offsets[1], R));
@@ -155,8 +164,13 @@ std::vector<Cause> axes_causes(const datasets::SequenceInfo& info,
   if (stated < kRightAxes) return {};
   std::vector<Cause> causes;
   const auto residual_with = [&](const Eigen::Matrix3d& P) { return residual(P.transpose() * R_b_c); };
-  const Eigen::Matrix3d best = simplest_permutation(residual_with);
-  const double smallest = residual_with(best);
+  Eigen::Matrix3d best = simplest_permutation(residual_with);
+  double smallest = residual_with(best);
+  const bool both = accel && residual_with(accel->P) < std::max(kRightAxes, kAsGood * smallest);
+  if (both) {
+    best = accel->P;
+    smallest = residual_with(best);
+  }
   const auto evidence = [&](double with_it) {
     return fmt::format(
         "the gyroscope differs from the rotation between images by {:.0f} %, by {:.0f} % with it",
@@ -164,9 +178,9 @@ std::vector<Cause> axes_causes(const datasets::SequenceInfo& info,
   };
   if (smallest < kBetterAxes * stated) {
     causes.push_back(axes_cause(best, PermutedSensor::kBoth, evidence(smallest)));
-    causes.push_back(axes_cause(best, PermutedSensor::kGyro, evidence(smallest)));
+    if (!both) causes.push_back(axes_cause(best, PermutedSensor::kGyro, evidence(smallest)));
     // The sensor whose axes are right by the accelerometer is tried last.
-    causes[accel_is_right ? 1 : 0].strength += 10.0;
+    causes[accel ? 0 : 1].strength += 10.0;
   }
   const double inverse = residual(R_b_c.transpose());
   if (inverse < kBetterAxes * stated)
@@ -183,8 +197,9 @@ std::vector<Cause> axes_causes(const datasets::SequenceInfo& info,
   return causes;
 }
 
-/// A rotation of the camera on the body other than the stated one.
-std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info, const std::vector<RatePair>& pairs) {
+/// A rotation of the camera on the body other than the stated one, by rates of a sensor in its frame.
+std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info, const std::vector<RatePair>& pairs,
+                                   const std::string& sensor = "images") {
   const RotationFit fit = fit_rotation(pairs);
   const Eigen::Quaterniond stated = info.rig.T_b_c.q;
   Eigen::Vector3d difference = log_so3(fit.q_a_b * stated.conjugate());
@@ -199,11 +214,25 @@ std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info, const std
   Pose T_b_c = info.rig.T_b_c;
   T_b_c.q = (exp_so3(difference) * stated).normalized();
   Cause cause = extrinsics_cause("extrinsics_rotation", "camera rotation on the body",
-                                 fmt::format("by gyroscope and images it is {:.2f} deg off ({:.0f} sigma)",
-                                             difference.norm() / kDegree, largest),
+                                 fmt::format("by gyroscope and {} it is {:.2f} deg off ({:.0f} sigma)",
+                                             sensor, difference.norm() / kDegree, largest),
                                  T_b_c);
   cause.strength = largest;
   return {cause};
+}
+
+/// By the rates of the ground truth, where those of the images are too noisy to tell, but agree.
+std::vector<Cause> rotation_by_truth(const datasets::SequenceInfo& info, const RateIntegral& gyro,
+                                     const std::vector<RatePair>& by_images) {
+  std::vector<RateInterval> by_truth =
+      rates_between(RateIntegral(info.ground_truth.trajectory), info.frame_times);
+  for (RateInterval& interval : by_truth) interval.rate = info.ground_truth.T_c_f.q * interval.rate;
+  const std::vector<RatePair> pairs = rate_pairs(gyro, by_truth, info.rig.time_offset_s);
+  const RotationFit fit = fit_rotation(pairs);
+  const bool images_agree = relative_residual(by_images, fit.q_a_b.toRotationMatrix()) <
+                            relative_residual(by_images, info.rig.T_b_c.R());
+  if (fit.residual > kRightAxes || !images_agree) return {};
+  return rotation_causes(info, pairs, "ground truth");
 }
 
 std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const LagFit& fit) {
@@ -221,11 +250,13 @@ std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const LagFit
                Correction{.change = [offset_s](auto& changed) { changed.rig.time_offset_s = offset_s; }}}};
 }
 
+double drift_sigmas(const LagFit& fit) { return std::abs(fit.drift_ppm) / fit.drift_sigma_ppm; }
+
 /// A lag that changes by more than a constant one may be wrong.
 std::vector<Cause> drift_causes(const datasets::SequenceInfo& info, const LagFit& fit) {
   const Timestamp first = info.frame_times.front();
   const double duration_s = seconds_between(first, info.frame_times.back());
-  const double rate = 1e-6 * fit.drift_ppm, sigmas = std::abs(fit.drift_ppm) / fit.drift_sigma_ppm;
+  const double rate = 1e-6 * fit.drift_ppm, sigmas = drift_sigmas(fit);
   if (std::abs(rate) * duration_s < kLeastLag_s || sigmas < kSignificant) return {};
   return {{.id = "clock_drift",
            .name = "clocks of camera and IMU drifting",
@@ -349,23 +380,26 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
   };
   add(sample_causes(info));
   const std::optional<LagFit> lag = fit_lag(gyro, by_images, kLagRange_s);
-  const std::vector<RatePair> pairs = rate_pairs(gyro, by_images, lag ? lag->lag_s : info.rig.time_offset_s);
+  const bool lag_is_known = lag && (lag->sigma_s < kLeastLag_s || drift_sigmas(*lag) > kSignificant);
+  const std::vector<RatePair> pairs =
+      rate_pairs(gyro, by_images, lag_is_known ? lag->lag_s : info.rig.time_offset_s);
   const std::optional<AccelerometerAxes> accel_axes = accelerometer_axes(info, survey);
   const std::vector<Cause> axes =
-      axes_causes(info, {rate_pairs(gyro, by_images, info.rig.time_offset_s), pairs}, !accel_axes);
+      axes_causes(info, {rate_pairs(gyro, by_images, info.rig.time_offset_s), pairs}, accel_axes);
   add(axes);
-  if (axes.empty()) add(rotation_causes(info, pairs));
+  if (axes.empty()) {
+    const std::vector<Cause> turned = rotation_causes(info, pairs);
+    add(turned.empty() ? rotation_by_truth(info, gyro, pairs) : turned);
+  }
   if (lag) {
     add(clock_causes(info, *lag));
     add(drift_causes(info, *lag));
   }
   add(depth_scale_causes(info, survey));
-  if (const auto found = accelerometer_axes(info, survey)) {
-    add({axes_cause(
-        found->P, PermutedSensor::kAccel,
-        fmt::format("the accelerometer follows the motion between images with a correlation of {:.2f}, "
-                    "{:.2f} with it",
-                    accel_axes->stated, accel_axes->correlation))});
+  if (accel_axes) {
+    const auto has = [&](const char* id) { return std::ranges::find(axes, id, &Cause::id) != axes.end(); };
+    const bool are_those_of_imu = has("imu_axes") && !has("gyro_axes");
+    if (!are_those_of_imu && !accel_axes->gyroscope_too) add({accel_axes_cause(*accel_axes)});
   } else if (const auto up = upward_part_of_force(info); up && *up < kDownward) {
     causes.push_back(
         axes_cause(-Eigen::Matrix3d::Identity(), PermutedSensor::kAccel,

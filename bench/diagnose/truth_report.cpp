@@ -57,16 +57,6 @@ Trajectory part_of_truth(const datasets::SequenceInfo& info) {
   return part;
 }
 
-std::vector<RateInterval> gyro_intervals(const datasets::SequenceInfo& info) {
-  const RateIntegral gyro(info.imu);
-  std::vector<RateInterval> intervals;
-  for (std::size_t i = 1; i < info.frame_times.size(); ++i) {
-    const Timestamp from = info.frame_times[i - 1], to = info.frame_times[i];
-    if (const auto rate = gyro.mean(from, to)) intervals.push_back({from, to, *rate});
-  }
-  return intervals;
-}
-
 double noise_of(const std::vector<StampedPose>& poses) {
   std::vector<double> differences;
   for (std::size_t i = 4; i < poses.size(); ++i) {
@@ -313,7 +303,9 @@ TruthReport truth_report(const datasets::SequenceInfo& info, const RecordingSurv
   const RateIntegral rates(truth);
   const std::vector<RateInterval> by_images = survey.rates();
   report.by_images = fit_lag(rates, by_images, kTruthLagRange_s);
-  if (!info.imu.empty()) report.by_gyro = fit_lag(rates, gyro_intervals(info), kTruthLagRange_s);
+  if (!info.imu.empty())
+    report.by_gyro =
+        fit_lag(rates, rates_between(RateIntegral(info.imu), info.frame_times), kTruthLagRange_s);
   if (!report.by_images) return report;
   report.rotation = fit_rotation(rate_pairs(rates, by_images, report.by_images->lag_s));
   add_hand_eye(truth, visual, report);

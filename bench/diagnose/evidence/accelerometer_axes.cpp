@@ -10,6 +10,8 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr double kInterval_s = 0.2;
+constexpr double kShortInterval_s = 0.05;  ///< of a vibration, which positions of the ground truth resolve
+constexpr double kMostLag_s = 0.2, kLagStepOfAxes_s = 0.005;
 constexpr double kBlock_s = 1.5;
 constexpr double kMinCorrelation = 0.7;
 constexpr double kFollows = 0.9;  ///< correlation of a block that determines the scale
@@ -31,6 +33,12 @@ struct Block {
   std::vector<Pose> poses;  ///< of the camera in the first one
 };
 
+void erase_short(std::vector<Block>& blocks) {
+  std::erase_if(blocks, [](const Block& block) {
+    return seconds_between(block.times.front(), block.times.back()) < 0.6 * kBlock_s;
+  });
+}
+
 std::vector<Block> blocks_of(const RecordingSurvey& survey) {
   std::vector<Block> blocks;
   for (const FrameStatistics& frame : survey.frames) {
@@ -41,16 +49,37 @@ std::vector<Block> blocks_of(const RecordingSurvey& survey) {
     block.poses.push_back(continues ? block.poses.back() * frame.T_now_last->inverse() : Pose{});
     block.times.push_back(frame.t);
   }
-  std::erase_if(blocks, [](const Block& block) {
-    return seconds_between(block.times.front(), block.times.back()) < 0.6 * kBlock_s;
-  });
+  erase_short(blocks);
   return blocks;
 }
 
+/// Of the ground truth during the frames.
+std::vector<Block> true_blocks(const datasets::SequenceInfo& info) {
+  const Pose T_f_c = info.ground_truth.T_c_f.inverse();
+  std::vector<Block> blocks;
+  for (const StampedPose& pose : info.ground_truth.trajectory.poses) {
+    if (pose.t < info.frame_times.front() || pose.t > info.frame_times.back()) continue;
+    const bool continues = !blocks.empty() &&
+                           seconds_between(blocks.back().times.back(), pose.t) < kShortInterval_s &&
+                           seconds_between(blocks.back().times.front(), pose.t) < kBlock_s;
+    if (!continues) blocks.emplace_back();
+    blocks.back().times.push_back(pose.t);
+    blocks.back().poses.push_back(pose.T_w_f * T_f_c);
+  }
+  erase_short(blocks);
+  return blocks;
+}
+
+/// How both sides are compared.
+struct Sampling {
+  double interval_s = kInterval_s;
+  double offset_s = 0.0;  ///< stamp of the IMU minus that of the poses
+};
+
 /// The times at the positions i < j < k of a block.
-Sides sides_at(const datasets::SequenceInfo& info, const Block& block, const std::array<std::size_t, 3>& at) {
+Sides sides_at(const datasets::SequenceInfo& info, const Block& block, const std::array<std::size_t, 3>& at,
+               double offset_s) {
   const auto [i, j, k] = at;
-  const double offset_s = info.rig.time_offset_s;
   const double before_s = seconds_between(block.times[i], block.times[j]);
   const double behind_s = seconds_between(block.times[j], block.times[k]);
   const Eigen::Matrix3d R_c_b = info.rig.T_b_c.R().transpose();
@@ -82,13 +111,14 @@ Sides sides_at(const datasets::SequenceInfo& info, const Block& block, const std
 }
 
 /// Both sides of a block without the part of gravity.
-std::vector<Sides> sides_of(const datasets::SequenceInfo& info, const Block& block) {
+std::vector<Sides> sides_of(const datasets::SequenceInfo& info, const Block& block,
+                            const Sampling& sampling) {
   std::vector<Sides> all;
   const double interval_s =
       seconds_between(block.times.front(), block.times.back()) / static_cast<double>(block.times.size() - 1);
-  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(kInterval_s / interval_s)));
+  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(sampling.interval_s / interval_s)));
   for (std::size_t j = step; j + step < block.times.size(); ++j)
-    all.push_back(sides_at(info, block, {j - step, j, j + step}));
+    all.push_back(sides_at(info, block, {j - step, j, j + step}, sampling.offset_s));
   Sides along{.images = Eigen::Vector3d::Zero(), .inertial = Linear::Zero()};
   for (const Sides& sides : all) {
     along.images += sides.weight * sides.images;
@@ -131,18 +161,17 @@ Sums sums_of(const std::vector<std::vector<Sides>>& blocks, const Eigen::Matrix3
   return all;
 }
 
-std::vector<std::vector<Sides>> all_sides(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
+std::vector<std::vector<Sides>> all_sides(const datasets::SequenceInfo& info,
+                                          const std::vector<Block>& blocks, const Sampling& sampling) {
   std::vector<std::vector<Sides>> all;
-  for (const Block& block : blocks_of(survey)) all.push_back(sides_of(info, block));
+  for (const Block& block : blocks) all.push_back(sides_of(info, block, sampling));
   return all;
 }
 
-}  // namespace
+constexpr double kAllBlocks = -2.0;
 
-std::optional<AccelerometerAxes> accelerometer_axes(const datasets::SequenceInfo& info,
-                                                    const RecordingSurvey& survey) {
-  const std::vector<std::vector<Sides>> blocks = all_sides(info, survey);
-  constexpr double kAllBlocks = -2.0;
+/// @return nullopt if no other axes follow the poses clearly better
+std::optional<AccelerometerAxes> best_axes(const std::vector<std::vector<Sides>>& blocks) {
   AccelerometerAxes found{.stated = sums_of(blocks, Eigen::Matrix3d::Identity(), kAllBlocks).correlation()};
   for (const Eigen::Matrix3d& P : axis_permutations()) {
     const double correlation = sums_of(blocks, P, kAllBlocks).correlation();
@@ -152,6 +181,42 @@ std::optional<AccelerometerAxes> accelerometer_axes(const datasets::SequenceInfo
   }
   if (found.correlation < kMinCorrelation || found.stated > found.correlation - kBetter) return std::nullopt;
   return found;
+}
+
+/// Whether the gyroscope follows the ground truth much better with these axes.
+bool gyroscope_has(const Eigen::Matrix3d& P, const datasets::SequenceInfo& info) {
+  constexpr double kBetterResidual = 0.6;
+  const std::vector<RatePair> pairs = rate_pairs(
+      RateIntegral(info.imu), rates_between(RateIntegral(info.ground_truth.trajectory), info.frame_times),
+      info.rig.time_offset_s);
+  const Eigen::Matrix3d R_b_f = (info.rig.T_b_c * info.ground_truth.T_c_f).R();
+  return relative_residual(pairs, P.transpose() * R_b_f) < kBetterResidual * relative_residual(pairs, R_b_f);
+}
+
+/// By the ground truth, which resolves a vibration that images do not. Half a period of one later, the stated
+/// axes look inverted.
+std::optional<AccelerometerAxes> axes_by_truth(const datasets::SequenceInfo& info) {
+  const std::vector<Block> blocks = true_blocks(info);
+  const Sampling stated{kShortInterval_s, info.rig.time_offset_s};
+  auto found = best_axes(all_sides(info, blocks, stated));
+  if (!found) return std::nullopt;
+  for (double lag_s = -kMostLag_s; lag_s <= kMostLag_s; lag_s += kLagStepOfAxes_s) {
+    const auto sides = all_sides(info, blocks, {kShortInterval_s, stated.offset_s + lag_s});
+    const double late = sums_of(sides, Eigen::Matrix3d::Identity(), kAllBlocks).correlation();
+    if (late > found->correlation - kBetter) return std::nullopt;
+  }
+  found->by_truth = true;
+  found->gyroscope_too = gyroscope_has(found->P, info);
+  return found;
+}
+
+}  // namespace
+
+std::optional<AccelerometerAxes> accelerometer_axes(const datasets::SequenceInfo& info,
+                                                    const RecordingSurvey& survey) {
+  const Sampling sampling{kInterval_s, info.rig.time_offset_s};
+  const auto found = best_axes(all_sides(info, blocks_of(survey), sampling));
+  return found ? found : axes_by_truth(info);
 }
 
 std::optional<double> upward_part_of_force(const datasets::SequenceInfo& info) {
@@ -176,7 +241,8 @@ std::optional<InertialScale> inertial_depth_scale(const datasets::SequenceInfo& 
                                                   const RecordingSurvey& survey) {
   std::vector<Sums> blocks;
   Sums all;
-  for (const std::vector<Sides>& block : all_sides(info, survey)) {
+  for (const std::vector<Sides>& block :
+       all_sides(info, blocks_of(survey), {kInterval_s, info.rig.time_offset_s})) {
     const Sums sums = sums_of({block}, Eigen::Matrix3d::Identity(), kFollows);
     if (sums.images <= 0.0) continue;
     blocks.push_back(sums);

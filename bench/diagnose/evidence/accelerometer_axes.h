@@ -20,9 +20,13 @@ struct AccelerometerAxes {
   Eigen::Matrix3d P = Eigen::Matrix3d::Identity();  ///< true force = P * recorded force
   double correlation = 0.0;                         ///< of both sides with P
   double stated = 0.0;                              ///< without P
+  bool by_truth = false;                            ///< as images do not tell
+  /// The gyroscope follows the ground truth with P, too: axes of both, or of the ground truth.
+  bool gyroscope_too = false;
 };
 
-/// @return nullopt if no other axes follow the images clearly better, or the motion does not tell
+/// By the images, or by the ground truth, whose positions resolve a vibration; over 0.05 s then.
+/// @return nullopt if no other axes follow clearly better, or the motion does not tell
 [[nodiscard]] std::optional<AccelerometerAxes> accelerometer_axes(const datasets::SequenceInfo& info,
                                                                   const RecordingSurvey& survey);
 

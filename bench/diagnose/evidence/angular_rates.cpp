@@ -21,6 +21,9 @@ constexpr double kLagStep_s = 0.005;
 constexpr double kMaxRelativeResidual = 0.6;  ///< else the sensors do not see the same rotation
 constexpr double kLeastSigma_s = 0.0005;
 constexpr int kTrimmings = 3;
+constexpr double kMostDrift = 0.01;     ///< of clocks [s/s]
+constexpr std::size_t kDriftParts = 8;  ///< at most
+constexpr std::size_t kLeastDriftParts = 4;
 
 Eigen::Vector3d residual_of(const RatePair& pair, const Eigen::Matrix3d& R_a_b) {
   return pair.a - R_a_b * pair.b;
@@ -48,21 +51,84 @@ double residual_at(const RateIntegral& a, std::span<const RateInterval> b, doubl
   return fit_rotation(pairs).residual;
 }
 
+/// Squares of the residuals at all lags.
+std::vector<double> squares_of(const RateIntegral& a, std::span<const RateInterval> b, double range_s) {
+  std::vector<double> squares;
+  const int steps = static_cast<int>(std::lround(range_s / kLagStep_s));
+  for (int step = -steps; step <= steps; ++step)
+    squares.push_back(std::pow(residual_at(a, b, step * kLagStep_s), 2));
+  return squares;
+}
+
 struct Minimum {
   double lag_s = 0.0, residual = 1.0;
 };
 
 /// Minimum by steps, refined by the parabola through the squares of three residuals.
 Minimum smallest_residual(const RateIntegral& a, std::span<const RateInterval> b, double range_s) {
-  std::vector<double> squares;
-  const int steps = static_cast<int>(std::lround(range_s / kLagStep_s));
-  for (int step = -steps; step <= steps; ++step)
-    squares.push_back(std::pow(residual_at(a, b, step * kLagStep_s), 2));
+  const std::vector<double> squares = squares_of(a, b, range_s);
+  const int steps = static_cast<int>(squares.size() / 2);
   const auto best = std::ranges::min_element(squares);
   if (best == squares.begin() || best + 1 == squares.end()) return {};
   const double curvature = *(best - 1) - 2.0 * *best + *(best + 1);
   const double fraction = curvature > 0.0 ? 0.5 * (*(best - 1) - *(best + 1)) / curvature : 0.0;
   return {(static_cast<double>(best - squares.begin()) - steps + fraction) * kLagStep_s, std::sqrt(*best)};
+}
+
+Timestamp middle_of(std::span<const RateInterval> b) {
+  return after(b.front().from, 0.5 * seconds_between(b.front().from, b.back().to));
+}
+
+/// The drift [s/s] with which the residuals of short parts have their least sum at one lag of the middle;
+/// 0 if no drift gives a common rotation.
+double coarse_drift(const RateIntegral& a, std::span<const RateInterval> b, double range_s) {
+  const std::size_t parts = std::min(kDriftParts, b.size() / kMinPairs);
+  if (parts < kLeastDriftParts) return 0.0;
+  std::vector<std::vector<double>> squares;
+  std::vector<double> from_middle_s;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const std::span<const RateInterval> part = b.subspan(k * b.size() / parts, b.size() / parts);
+    squares.push_back(squares_of(a, part, range_s));
+    from_middle_s.push_back(seconds_between(middle_of(b), middle_of(part)));
+  }
+  const double step = kLagStep_s / seconds_between(b.front().from, b.back().to);
+  const int steps = static_cast<int>(kMostDrift / step), lags = static_cast<int>(squares[0].size());
+  double least = static_cast<double>(parts) * kMaxRelativeResidual * kMaxRelativeResidual, drift = 0.0;
+  for (int i = -steps; i <= steps; ++i) {
+    for (int lag = 0; lag < lags; ++lag) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < parts; ++k) {
+        const int at = lag + static_cast<int>(std::lround(i * step * from_middle_s[k] / kLagStep_s));
+        sum += at >= 0 && at < lags ? squares[k][static_cast<std::size_t>(at)] : 1.0;
+      }
+      if (sum >= least) continue;
+      least = sum;
+      drift = i * step;
+    }
+  }
+  return drift;
+}
+
+/// Without a drift by more than a period of the rotation.
+std::optional<LagFit> fit_steady_lag(const RateIntegral& a, std::span<const RateInterval> b, double range_s) {
+  if (b.size() < 3 * kMinPairs) return std::nullopt;
+  const Minimum whole = smallest_residual(a, b, range_s);
+  if (whole.residual > kMaxRelativeResidual) return std::nullopt;
+  LagFit fit{.lag_s = whole.lag_s, .residual = whole.residual, .without = residual_at(a, b, 0.0)};
+  std::array<Minimum, 3> parts;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::span<const RateInterval> part = b.subspan(k * b.size() / 3, b.size() / 3);
+    parts[k] = smallest_residual(a, part, range_s);
+    if (parts[k].residual > kMaxRelativeResidual) return fit;
+    squares += std::pow(parts[k].lag_s - whole.lag_s, 2);
+  }
+  fit.sigma_s = std::max(kLeastSigma_s, std::sqrt(squares / 6.0));  // deviation of the mean of three
+  const double apart_s = seconds_between(b.front().from, b.back().to) * 2.0 / 3.0;
+  const double straightness_s = std::abs(parts[1].lag_s - 0.5 * (parts[0].lag_s + parts[2].lag_s));
+  fit.drift_ppm = 1e6 * (parts[2].lag_s - parts[0].lag_s) / apart_s;
+  fit.drift_sigma_ppm = 1e6 * std::max(kLeastSigma_s, straightness_s) * M_SQRT2 / apart_s;
+  return fit;
 }
 
 }  // namespace
@@ -108,6 +174,15 @@ std::optional<Eigen::Vector3d> RateIntegral::mean(Timestamp from, Timestamp to) 
   const std::optional<Eigen::Vector3d> begin = at(from), end = at(to);
   if (!begin || !end || !(from < to)) return std::nullopt;
   return (*end - *begin) / seconds_between(from, to);
+}
+
+std::vector<RateInterval> rates_between(const RateIntegral& integral, std::span<const Timestamp> times) {
+  std::vector<RateInterval> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (const auto rate = integral.mean(times[i - 1], times[i]))
+      intervals.push_back({times[i - 1], times[i], *rate});
+  }
+  return intervals;
 }
 
 std::vector<RatePair> rate_pairs(const RateIntegral& a, std::span<const RateInterval> b, double lag_s) {
@@ -177,23 +252,22 @@ RotationFit fit_rotation(std::vector<RatePair> pairs) {
 }
 
 std::optional<LagFit> fit_lag(const RateIntegral& a, std::span<const RateInterval> b, double range_s) {
-  if (b.size() < 3 * kMinPairs) return std::nullopt;
-  const Minimum whole = smallest_residual(a, b, range_s);
-  if (whole.residual > kMaxRelativeResidual) return std::nullopt;
-  LagFit fit{.lag_s = whole.lag_s, .residual = whole.residual, .without = residual_at(a, b, 0.0)};
-  std::array<Minimum, 3> parts;
-  double squares = 0.0;
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const std::span<const RateInterval> part = b.subspan(k * b.size() / 3, b.size() / 3);
-    parts[k] = smallest_residual(a, part, range_s);
-    if (parts[k].residual > kMaxRelativeResidual) return fit;
-    squares += std::pow(parts[k].lag_s - whole.lag_s, 2);
+  std::optional<LagFit> steady = fit_steady_lag(a, b, range_s);
+  if (steady && steady->drift_sigma_ppm < LagFit{}.drift_sigma_ppm) return steady;
+  const double drift = coarse_drift(a, b, range_s);
+  if (drift == 0.0) return steady;
+  const Timestamp middle = middle_of(b);
+  std::vector<RateInterval> moved(b.begin(), b.end());
+  for (RateInterval& interval : moved) {
+    interval.from = after(interval.from, drift * seconds_between(middle, interval.from));
+    interval.to = after(interval.to, drift * seconds_between(middle, interval.to));
   }
-  fit.sigma_s = std::max(kLeastSigma_s, std::sqrt(squares / 6.0));  // deviation of the mean of three
-  const double apart_s = seconds_between(b.front().from, b.back().to) * 2.0 / 3.0;
-  const double straightness_s = std::abs(parts[1].lag_s - 0.5 * (parts[0].lag_s + parts[2].lag_s));
-  fit.drift_ppm = 1e6 * (parts[2].lag_s - parts[0].lag_s) / apart_s;
-  fit.drift_sigma_ppm = 1e6 * std::max(kLeastSigma_s, straightness_s) * M_SQRT2 / apart_s;
+  std::optional<LagFit> fit = fit_steady_lag(a, moved, range_s);
+  if (!fit) return steady;
+  const double thirds_s = drift * seconds_between(b.front().from, b.back().to) / 3.0;
+  fit->sigma_s = std::hypot(fit->sigma_s, thirds_s / std::sqrt(3.0));  // as without the drift
+  fit->without = residual_at(a, b, 0.0);
+  fit->drift_ppm += 1e6 * drift;
   return fit;
 }
 

@@ -48,6 +48,10 @@ struct RateInterval {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
 };
 
+/// Mean rates between successive times, without those of gaps.
+[[nodiscard]] std::vector<RateInterval> rates_between(const RateIntegral& integral,
+                                                      std::span<const Timestamp> times);
+
 /// Mean rates of two sensors over the same interval.
 struct RatePair {
   Eigen::Vector3d a, b;
@@ -81,7 +85,8 @@ struct LagFit {
   double drift_sigma_ppm = 1e6;
 };
 
-/// The lag with the smallest residual, by steps of 5 ms and a parabola.
+/// The lag with the smallest residual, by steps of 5 ms and a parabola. Clocks that drift by so much that no
+/// lag fits are compared in short parts first, with drifts of up to 1 %.
 /// @return nullopt without motion that determines it
 [[nodiscard]] std::optional<LagFit> fit_lag(const RateIntegral& a, std::span<const RateInterval> b,
                                             double range_s);
