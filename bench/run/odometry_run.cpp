@@ -270,12 +270,9 @@ class RunRecorder {
     calibration.depth_scale = update.depth_scale;
     calibration.lens = update.lens;
     calibration.T_b_c = update.state.T_w_b.inverse() * update.T_w_c;
-    if (update.agrees_with_rig.extrinsics || calibration.extrinsics_agree)
-      calibration.extrinsics_agree = update.agrees_with_rig.extrinsics;
-    if (update.agrees_with_rig.depth_scale || calibration.depth_scale_agrees)
-      calibration.depth_scale_agrees = update.agrees_with_rig.depth_scale;
-    if (update.agrees_with_rig.lens || calibration.lens_agrees)
-      calibration.lens_agrees = update.agrees_with_rig.lens;
+    record_agreement(update,
+                     spec_.config.imu.enabled && spec_.config.backend.calibration_agreement_probability > 0.0,
+                     calibration);
     calibration.aligned_rotation = update.aligned_rotation;
     if (!update.covariance) return;
     calibration.rig_step = update.rig_step;
@@ -348,6 +345,15 @@ Frame load_frame(const datasets::SensorStream& stream, const RunSpec& spec, std:
 
 bool needs_color(const RunSpec& spec) {
   return spec.decode_color || spec.config.detector.kind == DetectorKind::kNetwork;
+}
+
+void record_agreement(const OdometryUpdate& update, bool compares, EstimatedCalibration& calibration) {
+  const auto record = [&](std::optional<bool>& agreement, bool agrees, bool differs) {
+    if (agrees || agreement || (compares && differs)) agreement = agrees;
+  };
+  record(calibration.extrinsics_agree, update.agrees_with_rig.extrinsics, false);
+  record(calibration.depth_scale_agrees, update.agrees_with_rig.depth_scale, update.depth_scale != 1.0);
+  record(calibration.lens_agrees, update.agrees_with_rig.lens, !update.lens.isZero(0.0));
 }
 
 OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec, RunControl control) {

@@ -122,6 +122,11 @@ struct EstimatedCalibration {
   int depth_scale_at_bound = 0;                     ///< same
 };
 
+/// Takes over whether the calibration of a located frame agrees with the rig.
+/// @param compares whether the config compares both: an estimate that differs then contradicts the rig, even
+/// if it never agreed, since the first comparison may tell
+void record_agreement(const OdometryUpdate& update, bool compares, EstimatedCalibration& calibration);
+
 /// Recorded output of a run.
 struct OdometryRun {
   Trajectory trajectory;                  ///< T_w_c, frame "camera"; one pose per tracked frame

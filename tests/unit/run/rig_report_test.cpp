@@ -76,5 +76,21 @@ TEST(RigReport, ATimeOffsetOfMoreThanAMillisecondDiffers) {
 
 TEST(RigReport, IsEmptyIfNothingWasEstimated) { EXPECT_TRUE(rig_report({}).empty()); }
 
+/// k1 off by 0.08 contradicts the rig in the first comparison: the lens was missing in the report.
+TEST(RecordAgreement, KnowsALensThatNeverAgreed) {
+  EstimatedCalibration calibration;
+  OdometryUpdate update;
+  record_agreement(update, true, calibration);
+  EXPECT_FALSE(calibration.lens_agrees || calibration.depth_scale_agrees || calibration.extrinsics_agree);
+  update.lens[1] = -0.08;
+  record_agreement(update, false, calibration);  // estimated from the start, without a comparison
+  EXPECT_FALSE(calibration.lens_agrees);
+  record_agreement(update, true, calibration);
+  EXPECT_EQ(calibration.lens_agrees, false);
+  update = {.agrees_with_rig = {.lens = true}};
+  record_agreement(update, true, calibration);
+  EXPECT_EQ(calibration.lens_agrees, true);
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
