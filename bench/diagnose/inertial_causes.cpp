@@ -231,8 +231,9 @@ std::vector<Cause> rotation_by_truth(const datasets::SequenceInfo& info, const R
   const RotationFit fit = fit_rotation(pairs);
   const bool images_agree = relative_residual(by_images, fit.q_a_b.toRotationMatrix()) <
                             relative_residual(by_images, info.rig.T_b_c.R());
-  if (fit.residual > kRightAxes || !images_agree) return {};
-  return rotation_causes(info, pairs, "ground truth");
+  const double stated = relative_residual(pairs, info.rig.T_b_c.R());
+  const bool explains = fit.residual < std::min(kRightAxes, kBetterAxes * stated);  // a vibration remains
+  return explains && images_agree ? rotation_causes(info, pairs, "ground truth") : std::vector<Cause>{};
 }
 
 std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const LagFit& fit) {

@@ -122,6 +122,13 @@ TEST(VibratingCart, TellsARotationOfTheCameraByTheGroundTruth) {
   EXPECT_EQ(cart.causes(), Ids{"extrinsics_rotation"});
 }
 
+/// On market it was taken for a rotation of the camera.
+TEST(VibratingCart, TakesAVibrationOfTheImuAloneForNoRotation) {
+  VibratingCart cart({.visual_noise_radps = 0.02});
+  for (ImuSample& sample : cart.info.imu) sample.gyro_b.y() += 0.5 * sample.gyro_b.x();
+  EXPECT_EQ(cart.causes(), Ids{});
+}
+
 /// No lag fits a clock that drifts by more than the vibration takes.
 TEST(VibratingCart, TellsADriftingClock) {
   VibratingCart cart({.drift = 0.005});
