@@ -192,9 +192,7 @@ class Diagnoser {
       all.insert(all.end(), more.begin(), more.end());
     }
     std::ranges::stable_sort(all, std::ranges::greater{}, &Cause::strength);
-    // With wrong units or axes, the other differences are their consequences.
-    if (!all.empty() && all.front().strength >= kFundamental)
-      std::erase_if(all, [](const Cause& cause) { return cause.strength < kFundamental; });
+    erase_consequences(all);
     std::vector<Cause> unique;
     for (Cause& cause : all) {
       if (std::ranges::find(unique, cause.id, &Cause::id) == unique.end()) unique.push_back(std::move(cause));
@@ -312,6 +310,14 @@ class Diagnoser {
 };
 
 }  // namespace
+
+void erase_consequences(std::vector<Cause>& causes) {
+  const auto is_fundamental = [](const Cause& cause) { return cause.strength >= kFundamental; };
+  if (std::ranges::none_of(causes, is_fundamental)) return;
+  std::erase_if(causes, [&](const Cause& cause) {
+    return !is_fundamental(cause) && cause.basis != CauseBasis::kShown;
+  });
+}
 
 void rank_others(std::vector<Cause>& causes, double effective) {
   std::ranges::stable_sort(causes, {}, [effective](const Cause& cause) {

@@ -51,6 +51,10 @@ struct Diagnosis {
   std::vector<Cause> others;  ///< with a smaller effect, or one that was not measured: most likely first
 };
 
+/// With wrong units or axes, the other differences between sensors are their consequences, and are left out;
+/// what the data itself shows stays.
+void erase_consequences(std::vector<Cause>& causes);
+
 /// Orders causes without an effect that counts: those that the data itself shows and wrong axes, as they are;
 /// those by comparison of sensors; those inferred from a run; among the last two by the error with their
 /// correction, and last those whose correction increases it by more than chance.

@@ -268,6 +268,7 @@ std::vector<Cause> quality_causes(const TruthReport& report) {
     causes.push_back(truth_cause("truth_part", "ground truth of a part",
                                  fmt::format("it covers {:.0f} % of the frames", 100.0 * report.coverage),
                                  "--start and --length select a part with ground truth"));
+  for (Cause& cause : causes) cause.basis = CauseBasis::kShown;
   return causes;
 }
 

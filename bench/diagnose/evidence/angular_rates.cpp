@@ -252,10 +252,9 @@ RotationFit fit_rotation(std::vector<RatePair> pairs) {
 }
 
 std::optional<LagFit> fit_lag(const RateIntegral& a, std::span<const RateInterval> b, double range_s) {
-  std::optional<LagFit> steady = fit_steady_lag(a, b, range_s);
-  if (steady && steady->drift_sigma_ppm < LagFit{}.drift_sigma_ppm) return steady;
+  if (std::optional<LagFit> steady = fit_steady_lag(a, b, range_s)) return steady;
   const double drift = coarse_drift(a, b, range_s);
-  if (drift == 0.0) return steady;
+  if (drift == 0.0) return std::nullopt;
   const Timestamp middle = middle_of(b);
   std::vector<RateInterval> moved(b.begin(), b.end());
   for (RateInterval& interval : moved) {
@@ -263,7 +262,7 @@ std::optional<LagFit> fit_lag(const RateIntegral& a, std::span<const RateInterva
     interval.to = after(interval.to, drift * seconds_between(middle, interval.to));
   }
   std::optional<LagFit> fit = fit_steady_lag(a, moved, range_s);
-  if (!fit) return steady;
+  if (!fit) return std::nullopt;
   const double thirds_s = drift * seconds_between(b.front().from, b.back().to) / 3.0;
   fit->sigma_s = std::hypot(fit->sigma_s, thirds_s / std::sqrt(3.0));  // as without the drift
   fit->without = residual_at(a, b, 0.0);
