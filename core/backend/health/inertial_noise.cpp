@@ -24,8 +24,8 @@ constexpr double kRise = 1.0;   // [1/s]
 constexpr double kFall = 0.75;  // [1/s]
 
 // Walks of the biases per unit of f - 1. 24 changes of a bias (accelerometer by 0.05, 0.1, 0.3 m/s^2,
-// gyroscope by 0.005 rad/s), of the stamps, or a person at 0.5 m, 3 and 4 s after the start of market (seeds 1
-// and 2): ATE above 0.1 m in 9 without these walks, as a depth scale that is 17 % off explained the
+// gyroscope by 0.005 rad/s), of the stamps, or a person at 0.5 m, 3 and 4 s after the start of market (seeds
+// 1 and 2): ATE above 0.1 m in 9 without these walks, as a depth scale that is 17 % off explained the
 // difference, in 4 with them. ATE of 18 rigs with imperfections 1.04 times (with 3e-4 and 0.05 1.07 times),
 // exact sensors 1.04.
 constexpr double kGyroWalk = 1e-4;   // [rad/s^2/sqrt(Hz)]
