@@ -46,6 +46,7 @@ struct VibratingCart {
       info.imu.push_back({.t = from_seconds(10.0 + (1.0 + options.drift) * t),
                           .gyro_b = vibration(t, kRotation, 1),
                           .accel_b = force});
+      if (i % 4 != 0) continue;
       info.ground_truth.trajectory.poses.push_back(
           {from_seconds(10.0 + t), Pose{q, vibration(t, 2.0, 0) + t * Eigen::Vector3d::UnitX()}});
     }
@@ -83,7 +84,8 @@ TEST(VibratingCart, TellsSwappedAxesOfTheAccelerometerByTheGroundTruth) {
   const std::vector<ImuSample> right = cart.info.imu;
   for (ImuSample& sample : cart.info.imu) sample.accel_b = sample.accel_b({1, 0, 2}).eval();
   const std::vector<Cause> causes = inertial_causes(cart.info, cart.survey);
-  ASSERT_EQ(cart.causes(), Ids{"accel_axes"});
+  ASSERT_EQ(causes.size(), 1u);
+  EXPECT_EQ(causes[0].id, "accel_axes");
   causes[0].correction->change(cart.info);
   EXPECT_TRUE(cart.info.imu[500].accel_b.isApprox(right[500].accel_b));
 }
