@@ -91,7 +91,7 @@ struct OdometryCounters {
 };
 
 /// Normalized innovation squared of a frame at its predicted pose, see
-/// core/backend/vision/vision_assessment.h: 1 in the mean for true covariances (inertial: 0.2 to 0.3, see
+/// core/backend/vision/vision_assessment.h: 1 in the mean for true covariances (inertial: 0.6 to 1.1, see
 /// InertialNoise). Absent without a covariance or reliable inertial data.
 struct Innovations {
   std::optional<double> reprojection;
