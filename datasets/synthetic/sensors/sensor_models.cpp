@@ -82,56 +82,59 @@ constexpr float kJump = 0.06F;  // relative difference of adjacent depths at an 
 constexpr std::uint64_t kLatticeOffset = 1ULL << 40;
 constexpr std::uint64_t kDropoutOffset = 1ULL << 41;
 
-/// Correlated noise of unit variance: bilinear interpolation of white noise on a lattice.
+/// Correlated noise of unit variance: bilinear interpolation of white noise on a lattice. Rows of the lattice
+/// are interpolated along the image's rows once, for all the rows of pixels between them.
 class SmoothNoise {
  public:
   SmoothNoise(int cell_px, const cv::Size& image, std::uint64_t key)
-      : cell_(cell_px), columns_(image.width / cell_px + 2) {
-    const int rows = image.height / cell_px + 2;
-    for (int row = 0; row < rows; ++row) {
-      for (int column = 0; column < columns_; ++column) {
-        nodes_.push_back(normal_from_bits(
-            mix_bits(key + kLatticeOffset + static_cast<std::uint64_t>(row * 65536 + column))));
-      }
-    }
-    for (int column = 0; column < cell_; ++column) fractions_.push_back(fraction(column));
-    for (int row = 0; row < cell_; ++row) {
-      for (int column = 0; column < cell_; ++column) {
-        const float x = fraction(column), y = fraction(row);
+      : cell_(static_cast<std::size_t>(cell_px)),
+        width_(static_cast<std::size_t>(image.width)),
+        key_(key + kLatticeOffset),
+        nodes_(width_ / cell_ + 2),
+        upper_(width_),
+        lower_(width_) {
+    for (std::size_t row = 0; row < cell_; ++row) {
+      for (std::size_t column = 0; column < width_; ++column) {
+        const float x = fraction(column % cell_), y = fraction(row);
         const float variance = ((1.0F - x) * (1.0F - x) + x * x) * ((1.0F - y) * (1.0F - y) + y * y);
         deviations_.push_back(std::sqrt(variance));
       }
     }
+    interpolate(0, lower_);
   }
 
-  /// The noise of a row of pixels.
-  void row(int row, std::span<float> out) const {
-    const int row_in_cell = row % cell_;
-    const float y = fraction(row_in_cell);
-    const float* top = nodes_.data() + std::ptrdiff_t{row / cell_} * columns_;
-    const float* const deviations = deviations_.data() + std::ptrdiff_t{row_in_cell} * cell_;
-    for (std::size_t first = 0; first < out.size(); first += static_cast<std::size_t>(cell_), ++top) {
-      const float* const bottom = top + columns_;
-      const std::size_t count = std::min(out.size() - first, static_cast<std::size_t>(cell_));
-      for (std::size_t i = 0; i < count; ++i) {
-        const float x = fractions_[i];
-        const float upper = top[0] * (1.0F - x) + top[1] * x;
-        const float lower = bottom[0] * (1.0F - x) + bottom[1] * x;
-        out[first + i] = (upper * (1.0F - y) + lower * y) / deviations[i];
-      }
+  /// The noise of a row of pixels; to be called for all rows in turn.
+  void row(std::size_t row, std::span<float> out) {
+    if (row % cell_ == 0) {
+      std::swap(upper_, lower_);
+      interpolate(row / cell_ + 1, lower_);
     }
+    const float y = fraction(row % cell_);
+    const float* const deviations = deviations_.data() + row % cell_ * width_;
+    for (std::size_t i = 0; i < width_; ++i)
+      out[i] = (upper_[i] * (1.0F - y) + lower_[i] * y) / deviations[i];
   }
 
  private:
-  [[nodiscard]] float fraction(int in_cell) const {
+  [[nodiscard]] float fraction(std::size_t in_cell) const {
     return static_cast<float>(in_cell) / static_cast<float>(cell_);
   }
 
-  int cell_;
-  int columns_;
-  std::vector<float> nodes_;       ///< row by row
-  std::vector<float> fractions_;   ///< of a cell, at its pixels
-  std::vector<float> deviations_;  ///< of the interpolated value, at the pixels of a cell
+  /// A row of the lattice at the columns of the image.
+  void interpolate(std::size_t row, std::vector<float>& out) {
+    for (std::size_t column = 0; column < nodes_.size(); ++column)
+      nodes_[column] = normal_from_bits(mix_bits(key_ + row * 65536 + column));
+    for (std::size_t i = 0; i < width_; ++i) {
+      const float x = fraction(i % cell_);
+      out[i] = nodes_[i / cell_] * (1.0F - x) + nodes_[i / cell_ + 1] * x;
+    }
+  }
+
+  std::size_t cell_, width_;
+  std::uint64_t key_;
+  std::vector<float> nodes_;          ///< of a row of the lattice
+  std::vector<float> upper_, lower_;  ///< the two rows of the lattice around a row of pixels
+  std::vector<float> deviations_;     ///< of the interpolated value, for the rows of pixels of a cell
 };
 
 bool differs(float a, float b) { return std::abs(a - b) > kJump * std::min(a, b); }
@@ -142,12 +145,14 @@ void mark_edges(const TrueDepth& image, int row, std::span<std::uint8_t> marks) 
   const float* const here = image.depth_m.data() + static_cast<std::size_t>(row) * width;
   const float* const above = row > 0 ? here - width : here;
   const float* const below = row + 1 < image.height ? here + width : here;
-  for (std::size_t i = 0; i < width; ++i)
-    marks[i] = static_cast<std::uint8_t>(differs(above[i], here[i]) | differs(below[i], here[i]));
-  for (std::size_t i = 1; i < width; ++i) {
-    const auto differ = static_cast<std::uint8_t>(differs(here[i - 1], here[i]));
-    marks[i - 1] |= differ, marks[i] |= differ;
-  }
+  const auto mark = [&](std::size_t i, std::size_t left, std::size_t right) {
+    marks[i] = static_cast<std::uint8_t>(differs(above[i], here[i]) | differs(below[i], here[i]) |
+                                         differs(here[left], here[i]) | differs(here[right], here[i]));
+  };
+  const std::size_t last = width - 1;
+  mark(0, 0, std::min<std::size_t>(1, last));
+  for (std::size_t i = 1; i < last; ++i) mark(i, i - 1, i + 1);
+  mark(last, last - std::min<std::size_t>(1, last), last);
 }
 
 /// `std::round` of a value below 2^52, in instructions that process several values.
@@ -156,47 +161,49 @@ double rounded(double value) {
   return whole + std::copysign(std::abs(value - whole) >= 0.5 ? 1.0 : 0.0, value);
 }
 
-/// Row of a depth image. The members are buffers.
+/// Row of a depth image. The member is a buffer.
 class DepthRow {
  public:
-  explicit DepthRow(std::size_t width) : disparity_(width), hidden_(width) {}
+  explicit DepthRow(std::size_t width) : disparity_(width) {}
 
   /// @param depth_m true depths
   /// @param noise   of unit variance; NaN where there is no measurement
   void simulate(std::span<const float> depth_m, std::span<const double> noise, const DepthSensor& sensor,
                 std::uint16_t* out) {
     const double focal_baseline = sensor.focal_baseline_px_m;
-    const double step_px = sensor.disparity_step_px;
     for (std::size_t i = 0; i < depth_m.size(); ++i)
       disparity_[i] = focal_baseline / static_cast<double>(depth_m[i]);
-    if (sensor.edge_dropout > 0.0) mark_hidden(depth_m);
+    if (sensor.edge_dropout > 0.0) remove_hidden();
+    for (std::size_t i = 0; i < depth_m.size(); ++i)
+      disparity_[i] += noise[i] * sensor.noise_per_m * focal_baseline;
+    const double step_px = sensor.disparity_step_px;
+    for (std::size_t i = 0; step_px > 0.0 && i < depth_m.size(); ++i)
+      disparity_[i] = rounded(disparity_[i] / step_px) * step_px;
+    const double min_m = sensor.min_m, max_m = sensor.max_m, units_per_m = sensor.units_per_m;
     for (std::size_t i = 0; i < depth_m.size(); ++i) {
-      double disparity = disparity_[i] + noise[i] * sensor.noise_per_m * focal_baseline;
-      if (step_px > 0.0) disparity = rounded(disparity / step_px) * step_px;
-      const double z = focal_baseline / disparity;
-      const bool valid =
-          depth_m[i] > 0.0F && hidden_[i] == 0 && disparity > 0.0 && z >= sensor.min_m && z <= sensor.max_m;
-      const double units = valid ? std::min(rounded(z * sensor.units_per_m), 65535.0) : 0.0;
+      const double z = focal_baseline / disparity_[i];
+      const bool valid = (disparity_[i] > 0.0) & (z >= min_m) & (z <= max_m);  // not so for NaN
+      const double units = valid ? std::min(rounded(z * units_per_m), 65535.0) : 0.0;
       out[i] = static_cast<std::uint16_t>(static_cast<int>(units));
     }
   }
 
  private:
-  /// Pixels that are occluded in the second imager: a closer surface projects to the same column of its
-  /// image, at column - fb / z.
-  void mark_hidden(std::span<const float> depth_m) {
-    double nearest_column = std::numeric_limits<double>::infinity();
-    for (std::size_t i = depth_m.size(); i-- > 0;) {
-      hidden_[i] = 0;
-      if (depth_m[i] <= 0.0F) continue;
-      const double column_in_second = static_cast<double>(i) - disparity_[i];
-      hidden_[i] = nearest_column <= column_in_second - 1.0 ? 1 : 0;
-      nearest_column = std::min(nearest_column, column_in_second);
+  /// Replaces by NaN what is occluded in the second imager: a closer surface projects to the same column of
+  /// its image, at column - fb / z. Where there is no surface, the disparity is infinite, and its depth 0.
+  void remove_hidden() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double nearest_column = kInfinity;
+    for (std::size_t i = disparity_.size(); i-- > 0;) {
+      const double in_second = static_cast<double>(i) - disparity_[i];
+      const double column = disparity_[i] < kInfinity ? in_second : kInfinity;
+      const bool hidden = nearest_column <= column - 1.0;
+      nearest_column = std::min(nearest_column, column);
+      disparity_[i] = hidden ? std::numeric_limits<double>::quiet_NaN() : disparity_[i];
     }
   }
 
   std::vector<double> disparity_;
-  std::vector<std::uint8_t> hidden_;
 };
 
 }  // namespace
@@ -204,19 +211,20 @@ class DepthRow {
 cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor, std::uint64_t noise_key) {
   const auto& [depth_m, width, height] = depth;
   cv::Mat image(height, width, CV_16UC1);
-  const SmoothNoise smooth(sensor.correlation_px, {width, height}, noise_key);
+  SmoothNoise smooth(sensor.correlation_px, {width, height}, noise_key);
   const auto smooth_weight = static_cast<float>(sensor.correlated_fraction);
   const float white_weight = std::sqrt(std::max(0.0F, 1.0F - smooth_weight * smooth_weight));
   const auto columns = static_cast<std::size_t>(width);
+  const std::array<float, kNormalQuantiles>& normal = normal_quantiles();
   DepthRow simulated(columns);
   std::vector<double> noise(columns);
   std::vector<float> correlated(columns);
   std::vector<std::uint8_t> edges(columns);
   for (int row = 0; row < height; ++row) {
     const std::size_t first = static_cast<std::size_t>(row) * columns;
-    smooth.row(row, correlated);
+    smooth.row(static_cast<std::size_t>(row), correlated);
     for (std::size_t i = 0; i < columns; ++i) {
-      const float white = normal_from_bits(mix_bits(noise_key + first + i));
+      const float white = normal[mix_bits(noise_key + first + i) & (kNormalQuantiles - 1)];
       noise[i] = static_cast<double>(white_weight * white + smooth_weight * correlated[i]);
     }
     if (sensor.edge_dropout > 0.0) mark_edges(depth, row, edges);
