@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "datasets/synthetic/render/lightmap.h"
 #include "datasets/synthetic/render/mover_tiles.h"
 #include "datasets/synthetic/render/surface_tiles.h"
 
@@ -113,6 +112,12 @@ double sample_time_offset(int index) { return kSampleTimes[static_cast<std::size
 
 FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const Camera& camera)
     : world_(world), tracer_(tracer), camera_(camera) {
+  for (std::size_t at = 0; at < kLightSamples; ++at) {
+    for (int column = 0; column < camera.width + Tile::kColumns; ++column)
+      column_x_[at].push_back(static_cast<float>((column + kOffset_x[at] - camera.cx) / camera.fx));
+    for (int row = 0; row < camera.height + Tile::kRows; ++row)
+      row_y_[at].push_back(static_cast<float>((row + kOffset_y[at] - camera.cy) / camera.fy));
+  }
   for (std::size_t at = 0; camera.has_distortion() && at < kLightSamples; ++at) {
     const Eigen::Vector2d offset(kOffset_x[at], kOffset_y[at]);
     for (int row = 0; row < camera.height; ++row) {
@@ -132,10 +137,7 @@ const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const Mover
     job.views.push_back(views);
   }
   const bool has_movers = movers != nullptr && !movers->mesh.triangles.empty();
-  if (has_movers) {
-    for (std::size_t i = 0; i < movers->mesh.start.size(); ++i)
-      job.visible.vertex_light.push_back(unshadowed_light(world_, movers->mesh.start[i], movers->normals[i]));
-  }
+  if (has_movers) job.visible.vertex_light.assign(movers->mesh.start.size(), -1.0F);
   std::optional<RayTracer::Movers> mover_scene;
   if (exposure.poses.size() == 1 && !camera_.has_distortion() && world_.mesh.triangles.empty()) {
     see_surfaces(exposure, has_movers ? &movers->mesh : nullptr, buffers);
@@ -194,7 +196,7 @@ void FrameRenderer::for_each_block(const Tile& tile, Function&& function) const 
   }
 }
 
-void FrameRenderer::render_tile(const Job& job, const Tile& tile, RenderedFrame& frame) const {
+void FrameRenderer::render_tile(Job& job, const Tile& tile, RenderedFrame& frame) const {
   TileShading shading(job.visible);
   TileHits hits;
   for (std::size_t sample = 0; sample < kLightSamples; ++sample) {
@@ -219,17 +221,20 @@ void FrameRenderer::render_tile(const Job& job, const Tile& tile, RenderedFrame&
 
 TileRays FrameRenderer::rays_through(const Tile& tile, std::size_t sample) const {
   TileRays rays;
+  if (directions_[sample].empty()) {
+    for (std::size_t first = 0; first < Tile::kPixels; first += Tile::kColumns) {
+      std::copy_n(column_x_[sample].begin() + tile.column, Tile::kColumns, rays.x.begin() + first);
+      std::fill_n(rays.y.begin() + first, Tile::kColumns,
+                  row_y_[sample][static_cast<std::size_t>(tile.row) + first / Tile::kColumns]);
+    }
+    return rays;
+  }
   for (int at = 0; at < Tile::kPixels; ++at) {
     const int row = tile.row + at / Tile::kColumns, column = tile.column + at % Tile::kColumns;
+    const Eigen::Vector2f& point =
+        directions_[sample][pixel_at(std::min(row, camera_.height - 1), std::min(column, camera_.width - 1))];
     const auto i = static_cast<std::size_t>(at);
-    if (!directions_[sample].empty()) {
-      const Eigen::Vector2f& point = directions_[sample][pixel_at(std::min(row, camera_.height - 1),
-                                                                  std::min(column, camera_.width - 1))];
-      rays.x[i] = point.x(), rays.y[i] = point.y();
-    } else {
-      rays.x[i] = static_cast<float>((column + kOffset_x[sample] - camera_.cx) / camera_.fx);
-      rays.y[i] = static_cast<float>((row + kOffset_y[sample] - camera_.cy) / camera_.fy);
-    }
+    rays.x[i] = point.x(), rays.y[i] = point.y();
   }
   return rays;
 }
@@ -241,6 +246,7 @@ void FrameRenderer::find_surfaces(const Job& job, const LightSample& sample, Til
     if (!job.moving.empty()) job.moving[kTimeOfSample[sample.number]].find(sample.tile, sample.rays, hits);
     return;
   }
+  hits.content = TileHits::Content::kAny;
   for_each_block(sample.tile, [&](const Block& block) {
     RayPacket packet = aim(job, block, sample);
     tracer_.trace(packet);

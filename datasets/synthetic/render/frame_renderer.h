@@ -73,7 +73,7 @@ class FrameRenderer {
   void for_each_pixel(const Tile& tile, Function&& function) const;
   template <class Function>
   void for_each_block(const Tile& tile, Function&& function) const;
-  void render_tile(const Job& job, const Tile& tile, RenderedFrame& frame) const;
+  void render_tile(Job& job, const Tile& tile, RenderedFrame& frame) const;
   [[nodiscard]] TileRays rays_through(const Tile& tile, std::size_t sample) const;
   void find_surfaces(const Job& job, const LightSample& sample, TileHits& hits) const;
   [[nodiscard]] RayPacket aim(const Job& job, const Block& block, const LightSample& sample) const;
@@ -88,6 +88,8 @@ class FrameRenderer {
   Camera camera_;
   /// With distortion: normalized image coordinates (x, y) of every pixel, one table per light sample.
   std::array<std::vector<Eigen::Vector2f>, kLightSamples> directions_;
+  /// Without: x of every column and y of every row, up to the ends of the last tiles.
+  std::array<std::vector<float>, kLightSamples> column_x_, row_y_;
 };
 
 }  // namespace stillpoint::synth

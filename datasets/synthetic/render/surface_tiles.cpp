@@ -55,14 +55,6 @@ float signed_area(const Polygon& polygon) {
   return area;
 }
 
-/// @return smallest and largest value in a rectangle
-std::pair<float, float> range(const LinearForm& form, const Vector2f& low, const Vector2f& high) {
-  const float x_low = form.a * low.x(), x_high = form.a * high.x(), y_low = form.b * low.y(),
-              y_high = form.b * high.y();
-  return {std::min(x_low, x_high) + std::min(y_low, y_high) + form.c,
-          std::max(x_low, x_high) + std::max(y_low, y_high) + form.c};
-}
-
 LinearForm edge_between(const Vector2f& from, const Vector2f& to, float orientation) {
   const Vector2f along = orientation * (to - from);
   return {-along.y(), along.x(), along.y() * from.x() - along.x() * from.y()};
@@ -94,14 +86,7 @@ SeenSurface seen_surface(const std::array<Vector3f, kCorners>& corners_c, std::i
           .surface = surface};
 }
 
-/// A linear form along a row.
-struct AlongRow {
-  float slope, first;
-  AlongRow(const LinearForm& form, float y) : slope(form.a), first(form.b * y + form.c) {}
-  float operator()(float x) const { return slope * x + first; }
-};
-
-/// Eight pixels of a row.
+/// Eight pixels or tiles of a row.
 using Floats = float __attribute__((vector_size(32)));
 using Integers = std::int32_t __attribute__((vector_size(32)));
 
@@ -111,6 +96,24 @@ Vector load(const T* from) {
   std::memcpy(&values, from, sizeof values);
   return values;
 }
+
+/// Smallest and largest values of a linear form in eight rectangles of a row.
+struct Ranges {
+  Floats smallest, largest;
+  Ranges(const LinearForm& form, const Floats& low_x, const Floats& high_x, const Vector2f& low_high_y) {
+    const Floats x_low = form.a * low_x, x_high = form.a * high_x;
+    const auto [y_low, y_high] = std::minmax({form.b * low_high_y.x(), form.b * low_high_y.y()});
+    smallest = (x_low < x_high ? x_low : x_high) + y_low + form.c;
+    largest = (x_low < x_high ? x_high : x_low) + y_high + form.c;
+  }
+};
+
+/// A linear form along a row.
+struct AlongRow {
+  float slope, first;
+  AlongRow(const LinearForm& form, float y) : slope(form.a), first(form.b * y + form.c) {}
+  float operator()(float x) const { return slope * x + first; }
+};
 
 /// A linear form at eight columns of a row.
 struct AlongColumns {
@@ -177,6 +180,25 @@ void record(const SeenSurface& surface, std::int32_t number, std::size_t first, 
   }
 }
 
+/// Records the only surface in a tile; by the operations of `test` and `record`, for equal rounding.
+void show_one(const SeenSurface& surface, const TileRays& rays, TileHits& hits) {
+  hits.content = TileHits::Content::kOneSurface;
+  hits.surface.fill(surface.surface);
+  for (std::size_t column = 0; column < Tile::kColumns; column += kLanes) {
+    const auto x = load<Floats>(rays.x.data() + column);
+    const AlongColumns inverse_depth(surface.inverse_depth, x);
+    for (std::size_t first = column; first < Tile::kPixels; first += Tile::kColumns) {
+      const float y = rays.y[first];
+      const AlongRow along_u(surface.u, y), along_v(surface.v, y);
+      const Floats inverse_z = inverse_depth(y), z = 1.0F / inverse_z;
+      const Floats u = (along_u.slope * x + along_u.first) * z, v = (along_v.slope * x + along_v.first) * z;
+      std::memcpy(hits.inverse_z.data() + first, &inverse_z, sizeof inverse_z);
+      std::memcpy(hits.u.data() + first, &u, sizeof u);
+      std::memcpy(hits.v.data() + first, &v, sizeof v);
+    }
+  }
+}
+
 /// Camera coordinates of points in the world.
 struct ToCamera {
   Eigen::Matrix3f R_c_w;
@@ -190,6 +212,7 @@ struct ToCamera {
 }  // namespace
 
 void TileHits::clear() {
+  content = Content::kNothing;
   inverse_z.fill(1.0F / kFar_m);
   surface.fill(-1);
 }
@@ -230,13 +253,21 @@ void SurfaceTiles::begin(const Camera& camera) {
   top_ = static_cast<float>((camera.cy + 1.0) / camera.fy);
   bottom_ = static_cast<float>((camera.height - camera.cy) / camera.fy);
   seen_.clear(), entries_.clear();
+  const auto fx = static_cast<float>(camera.fx), cx = static_cast<float>(camera.cx);
+  low_x_.assign(static_cast<std::size_t>(columns_ + kLanes), 0.0F), high_x_ = low_x_;
+  for (int column = 0; column < columns_; ++column) {
+    const auto x = static_cast<float>(column * Tile::kColumns);
+    low_x_[static_cast<std::size_t>(column)] = (x - kMargin_px - cx) / fx;
+    high_x_[static_cast<std::size_t>(column)] = (x + Tile::kColumns - 1 + kMargin_px - cx) / fx;
+  }
 }
 
 void SurfaceTiles::see_quads(std::span<const Quad> quads, const Camera& camera, const Pose& T_w_c) {
   begin(camera);
-  covered_.assign(static_cast<std::size_t>(columns_ * rows_), 0.0F);
+  covered_.assign(static_cast<std::size_t>(columns_ * rows_ + kLanes), 0.0F);
   const ToCamera to_camera(T_w_c);
   for (std::size_t i = 0; i < quads.size(); ++i) {
+    if (quads[i].one_sided && quads[i].normal.dot(to_camera.center - quads[i].origin) <= 0.0F) continue;
     const Vector3f origin = to_camera(quads[i].origin);
     const Vector3f edge_u = to_camera.R_c_w * quads[i].edge_u, edge_v = to_camera.R_c_w * quads[i].edge_v;
     add(std::array<Vector3f, 4>{origin, origin + edge_u, origin + edge_u + edge_v, origin + edge_v},
@@ -255,8 +286,9 @@ void SurfaceTiles::see_triangles(const MovingMesh& mesh, float time, const Pose&
     points_c_[i] = to_camera(mesh.start[i] + time * (mesh.end[i] - mesh.start[i]));
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& [a, b, c] = mesh.triangles[i];
-    add(std::array{points_c_[a], points_c_[b], points_c_[c]},
-        TileHits::kMoving | static_cast<std::int32_t>(i));
+    const Vector3f &at_a = points_c_[a], &at_b = points_c_[b], &at_c = points_c_[c];
+    if ((at_b - at_a).cross(at_c - at_a).dot(at_a) >= 0.0F) continue;  // its back
+    add(std::array{at_a, at_b, at_c}, TileHits::kMoving | static_cast<std::int32_t>(i));
   }
   sort_entries();
 }
@@ -279,46 +311,58 @@ void SurfaceTiles::add(const std::array<Vector3f, kCorners>& corners_c, std::int
 }
 
 void SurfaceTiles::add_to_tiles(const Outline& outline, const SeenSurface& seen) {
-  const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy);
-  const auto cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
   const LinearForm& inverse_depth = seen.inverse_depth;
   const float inverse_height = Vector3f(inverse_depth.a, inverse_depth.b, inverse_depth.c).norm();
   const bool edge_on = !(inverse_height * kEdgeOn_m <= 1.0F);  // the inverse depth is not known well
-  for (int row = outline.top / Tile::kRows; row <= outline.bottom / Tile::kRows; ++row) {
-    for (int column = outline.left / Tile::kColumns; column <= outline.right / Tile::kColumns; ++column) {
-      const int x = column * Tile::kColumns, y = row * Tile::kRows;
-      const Vector2f low((static_cast<float>(x) - kMargin_px - cx) / fx,
-                         (static_cast<float>(y) - kMargin_px - cy) / fy);
-      const Vector2f high((static_cast<float>(x + Tile::kColumns - 1) + kMargin_px - cx) / fx,
-                          (static_cast<float>(y + Tile::kRows - 1) + kMargin_px - cy) / fy);
-      bool covers = !edge_on, outside = false;
-      for (std::size_t i = 0; i < outline.edge_count; ++i) {
-        const auto [smallest, largest] = range(outline.edges[i], low, high);
-        covers = covers && smallest > 0.0F;
-        outside = outside || largest < 0.0F;
-      }
-      const auto [farthest, nearest] = range(inverse_depth, low, high);
-      const auto tile = static_cast<std::uint32_t>(row * columns_ + column);
-      if (outside || (!edge_on && nearest < covered_[tile])) continue;
-      entries_.push_back(
-          {.tile = tile,
-           .seen = static_cast<std::uint32_t>(seen_.size()),
-           .first_row = static_cast<std::uint8_t>(std::max(0, outline.top - y)),
-           .end_row = static_cast<std::uint8_t>(std::min(Tile::kRows, outline.bottom + 1 - y)),
-           .first_column = static_cast<std::uint8_t>(std::max(0, outline.left - x)),
-           .end_column = static_cast<std::uint8_t>(std::min(Tile::kColumns, outline.right + 1 - x)),
-           .nearest = edge_on ? std::numeric_limits<float>::infinity() : nearest});
-      if (covers) covered_[tile] = std::max(covered_[tile], farthest * (1.0F - kDepthMargin));
+  for (int row = outline.top / Tile::kRows; row <= outline.bottom / Tile::kRows; ++row)
+    add_to_row(row, outline, seen, edge_on);
+}
+
+void SurfaceTiles::add_to_row(int row, const Outline& outline, const SeenSurface& seen, bool edge_on) {
+  const auto fy = static_cast<float>(camera_.fy), cy = static_cast<float>(camera_.cy);
+  const auto y = static_cast<float>(row * Tile::kRows);
+  const Vector2f low_high_y((y - kMargin_px - cy) / fy, (y + Tile::kRows - 1 + kMargin_px - cy) / fy);
+  const int last = outline.right / Tile::kColumns;
+  for (int first = outline.left / Tile::kColumns; first <= last; first += kLanes) {
+    const auto low_x = load<Floats>(low_x_.data() + first), high_x = load<Floats>(high_x_.data() + first);
+    const int first_tile = row * columns_ + first;
+    const Ranges depths(seen.inverse_depth, low_x, high_x, low_high_y);
+    Integers covers = Integers{} - (edge_on ? 0 : 1);
+    Integers seen_in = ~covers | (depths.largest >= load<Floats>(covered_.data() + first_tile));
+    for (std::size_t i = 0; i < outline.edge_count; ++i) {
+      const Ranges distances(outline.edges[i], low_x, high_x, low_high_y);
+      covers &= distances.smallest > 0.0F;
+      seen_in &= distances.largest >= 0.0F;
+    }
+    for (int lane = 0; lane < std::min(kLanes, last + 1 - first); ++lane) {
+      if (seen_in[lane] == 0) continue;
+      const float nearest = edge_on ? std::numeric_limits<float>::infinity() : depths.largest[lane];
+      const auto tile = static_cast<std::uint32_t>(first_tile + lane);
+      add_to_tile({row * Tile::kRows, (first + lane) * Tile::kColumns}, outline,
+                  {.tile = tile, .covers = covers[lane] != 0, .nearest = nearest});
+      if (covers[lane] != 0)
+        covered_[tile] = std::max(covered_[tile], depths.smallest[lane] * (1.0F - kDepthMargin));
     }
   }
+}
+
+/// Completes an entry.
+void SurfaceTiles::add_to_tile(const Tile& tile, const Outline& outline, Entry entry) {
+  entry.seen = static_cast<std::uint32_t>(seen_.size());
+  entry.first_row = static_cast<std::uint8_t>(std::max(0, outline.top - tile.row));
+  entry.end_row = static_cast<std::uint8_t>(std::min(Tile::kRows, outline.bottom + 1 - tile.row));
+  entry.first_column = static_cast<std::uint8_t>(std::max(0, outline.left - tile.column));
+  entry.end_column = static_cast<std::uint8_t>(std::min(Tile::kColumns, outline.right + 1 - tile.column));
+  entries_.push_back(entry);
 }
 
 /// Sorts those that are not hidden.
 void SurfaceTiles::sort_entries() {
   std::erase_if(entries_, [this](const Entry& entry) { return entry.nearest < covered_[entry.tile]; });
-  first_.assign(covered_.size() + 2, 0);
+  const auto tiles = static_cast<std::size_t>(columns_ * rows_);
+  first_.assign(tiles + 2, 0);
   for (const Entry& entry : entries_) ++first_[entry.tile + 2];
-  for (std::size_t tile = 0; tile < covered_.size(); ++tile) first_[tile + 2] += first_[tile + 1];
+  for (std::size_t tile = 0; tile < tiles; ++tile) first_[tile + 2] += first_[tile + 1];
   sorted_.resize(entries_.size());
   for (const Entry& entry : entries_) sorted_[first_[entry.tile + 1]++] = entry;  // then the end of the tile
 }
@@ -326,9 +370,14 @@ void SurfaceTiles::sort_entries() {
 void SurfaceTiles::find(const Tile& tile, const TileRays& rays, TileHits& hits) const {
   const auto number =
       static_cast<std::size_t>(tile.row / Tile::kRows * columns_ + tile.column / Tile::kColumns);
+  const std::size_t begin = first_[number], end = first_[number + 1];
+  if (begin == end) return;
+  if (hits.content == TileHits::Content::kNothing && end == begin + 1 && sorted_[begin].covers)
+    return show_one(seen_[sorted_[begin].seen], rays, hits);
+  hits.content = TileHits::Content::kAny;
   Search search{.rays = rays, .hits = hits, .seen = {}};
   search.seen.fill(-1);
-  for (std::size_t i = first_[number]; i < first_[number + 1]; ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const Entry& entry = sorted_[i];
     for (int column = entry.first_column / kLanes * kLanes; column < entry.end_column; column += kLanes) {
       test(seen_[entry.seen], static_cast<std::int32_t>(entry.seen), {entry.first_row, entry.end_row, column},

@@ -30,6 +30,8 @@ struct TileRays {
 
 /// What the light samples in the pixels of a tile show, in row-major order.
 struct TileHits {
+  enum class Content { kNothing, kOneSurface, kAny };  ///< kOneSurface: the same in all pixels
+  Content content = Content::kNothing;
   alignas(64) std::array<float, Tile::kPixels> inverse_z;  ///< of the depth along the optical axis [1/m]
   alignas(64) std::array<float, Tile::kPixels> u, v;       ///< coordinates in the surface
   static constexpr std::int32_t kMoving = 1 << 30;
@@ -65,8 +67,9 @@ class SurfaceTiles {
   /// its pose
   void see_quads(std::span<const Quad> quads, const Camera& camera, const Pose& T_w_c);
 
-  /// Replaces all surfaces by the triangles of a moving mesh at a ray time, but for those that are hidden by
-  /// `before`, seen by the same camera from the same pose.
+  /// Replaces all surfaces by the triangles of a moving mesh at a ray time, but for those whose back is seen
+  /// (the mesh is closed, and its triangles are counterclockwise seen from outside), and those that are
+  /// hidden by `before`, seen by the same camera from the same pose.
   void see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c, const SurfaceTiles& before);
 
   /// Replaces hits by nearer ones; among surfaces at the same depth (to 1e-5), the one with the lowest
@@ -79,6 +82,7 @@ class SurfaceTiles {
   struct Entry {
     std::uint32_t tile, seen;
     std::uint8_t first_row, end_row, first_column, end_column;  ///< of the tile
+    bool covers;                                                ///< all pixels of the tile
     float nearest;                                              ///< largest inverse depth in the tile [1/m]
   };
   struct Outline;
@@ -86,16 +90,20 @@ class SurfaceTiles {
   template <std::size_t kCorners>
   void add(const std::array<Eigen::Vector3f, kCorners>& corners_c, std::int32_t surface);
   void add_to_tiles(const Outline& outline, const SeenSurface& seen);
+  void add_to_row(int row, const Outline& outline, const SeenSurface& seen, bool edge_on);
+  void add_to_tile(const Tile& tile, const Outline& outline, Entry entry);
   void sort_entries();
 
   Camera camera_;
   int columns_ = 0, rows_ = 0;
+  std::vector<float> low_x_, high_x_;  ///< sides of the columns of tiles, in normalized coordinates
   float left_ = 0.0F, right_ = 0.0F, top_ = 0.0F,
         bottom_ = 0.0F;  ///< sides of the image, in normalized coordinates, outward
   std::vector<SeenSurface> seen_;
   std::vector<Entry> entries_, sorted_;  ///< `sorted_` by tile and number
-  std::vector<float> covered_;           ///< per tile: inverse depth behind which everything is hidden [1/m]
-  std::vector<std::uint32_t> first_;     ///< per tile: in sorted_
+  /// Per tile: inverse depth behind which everything is hidden [1/m]; padded for loads of eight.
+  std::vector<float> covered_;
+  std::vector<std::uint32_t> first_;  ///< per tile: in sorted_
   std::vector<Eigen::Vector3f> points_c_;
 };
 

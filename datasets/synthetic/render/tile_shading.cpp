@@ -64,7 +64,13 @@ struct TileShading::Appearance {
   float texels_per_m = 1.0F;
 };
 
-TileShading::Appearance TileShading::appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c) const {
+float VisibleWorld::light(std::uint32_t vertex) {
+  float& light = vertex_light[vertex];
+  if (light < 0.0F) light = unshadowed_light(*world, movers->mesh.start[vertex], movers->normals[vertex]);
+  return light;
+}
+
+TileShading::Appearance TileShading::appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c) {
   const World& world = *visible_.world;
   const auto number = static_cast<std::size_t>(surface & ~TileHits::kMoving);
   Appearance shown;
@@ -90,28 +96,34 @@ TileShading::Appearance TileShading::appearance(std::int32_t surface, const Eige
   }
   shown.surface = surface;
   const Eigen::Matrix3f R_c_w = R_w_c.transpose();
-  shown.normal = {R_c_w * shown.normal.a, R_c_w * shown.normal.b, R_c_w * shown.normal.c};
+  shown.normal.a = R_c_w * shown.normal.a;
+  if ((surface & TileHits::kMoving) != 0)
+    shown.normal.b = R_c_w * shown.normal.b, shown.normal.c = R_c_w * shown.normal.c;
   if (shown.texture >= 0)
     shown.highest_level = world.textures[static_cast<std::size_t>(shown.texture)].highest_level();
   return shown;
 }
 
-TileShading::Appearance TileShading::mover_appearance(std::size_t triangle) const {
+TileShading::Appearance TileShading::mover_appearance(std::size_t triangle) {
   const MoverTriangle& material = visible_.movers->appearance[triangle];
   const auto& [a, b, c] = visible_.movers->mesh.triangles[triangle];
   const std::vector<Vector3f>& normals = visible_.movers->normals;
-  const std::vector<float>& light = visible_.vertex_light;
   const auto [s, t] = texture_coordinates(material.uv);
   return {.normal = Linear<Vector3f>::through(normals[a], normals[b], normals[c]),
           .s = s,
           .t = t,
-          .irradiance = Linear<float>::through(light[a], light[b], light[c]),
+          .irradiance = Linear<float>::through(visible_.light(a), visible_.light(b), visible_.light(c)),
           .texture = material.texture,
           .texels_per_m = material.texels_per_m};
 }
 
 void TileShading::add(const TileSample& sample, float weight) {
-  find_texels(sample);
+  if (sample.hits.content == TileHits::Content::kOneSurface) {
+    show_texels_of_one(sample);
+  } else {
+    find_texels(sample);
+    find_mips();
+  }
   read_texels(sample.hits);
   blend(weight);
 }
@@ -129,14 +141,31 @@ void TileShading::find_texels(const TileSample& sample) {
       const Eigen::Matrix3f* const rotation = sample.R_w_c[first / Tile::kColumns];
       if (surface != shown.surface || rotation != R_w_c) shown = appearance(surface, *rotation);
       R_w_c = rotation;
-      left &= ~find_texels(shown, first, sample);
+      find_texels<kLanes>(shown, first, sample);
+      light_up(shown, first, sample.hits);
+      left &= ~lanes_of(surface, surfaces);
     }
   }
 }
 
+/// As `find_texels` and `find_mips`, of a tile that shows one surface.
+void TileShading::show_texels_of_one(const TileSample& sample) {
+  const Appearance shown = appearance(sample.hits.surface[0], *sample.R_w_c[0]);
+  texture_.fill(shown.texture);
+  find_texels<Tile::kPixels>(shown, 0, sample);
+  light_up_all(shown, sample.hits);
+  std::int32_t differing = 0;
+  for (const std::int32_t level : level_) differing |= level ^ level_[0];
+  if (differing != 0 || shown.texture < 0) return find_mips();
+  const Texture::Level mip =
+      visible_.world->textures[static_cast<std::size_t>(shown.texture)].level(level_[0]);
+  mip_.fill(mip.texels), columns_.fill(mip.width), rows_.fill(mip.height);
+}
+
 /// Mip levels: the footprint of half a pixel at the hit, stretched by the slant of the surface (geometric
-/// mean). @return the pixels that show the surface, as bits
-std::uint32_t TileShading::find_texels(const Appearance& shown, std::size_t first, const TileSample& sample) {
+/// mean). @tparam kPixels all of a tile, or those of which some show the surface
+template <std::size_t kPixels>
+void TileShading::find_texels(const Appearance& shown, std::size_t first, const TileSample& sample) {
   const Linear<Vector3f> normal = shown.normal;
   const Linear<float> along_s = shown.s, along_t = shown.t;
   const float texels_per_depth = sample.pixel_size * shown.texels_per_m;
@@ -150,7 +179,7 @@ std::uint32_t TileShading::find_texels(const Appearance& shown, std::size_t firs
   float *const out_s = s_.data() + first, *const out_t = t_.data() + first;
   std::int32_t *const out_texture = texture_.data() + first, *const out_level = level_.data() + first;
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < kLanes; ++i) {
+  for (std::size_t i = 0; i < kPixels; ++i) {
     const float x = rays_x[i], y = rays_y[i], u = hit_u[i], v = hit_v[i];
     const float n_x = normal.a.x() + u * normal.b.x() + v * normal.c.x();
     const float n_y = normal.a.y() + u * normal.b.y() + v * normal.c.y();
@@ -160,7 +189,7 @@ std::uint32_t TileShading::find_texels(const Appearance& shown, std::size_t firs
     const float cosine_squared = std::max(along * along / lengths, 0.0025F);
     const float size = texels_per_depth / inverse_z[i];
     const float level = approximate_log2(size) - 0.25F * approximate_log2(cosine_squared) + bias;
-    const bool is_shown = surfaces[i] == surface;
+    const bool is_shown = kPixels == Tile::kPixels || surfaces[i] == surface;
     const float s = along_s.a + u * along_s.b + v * along_s.c, t = along_t.a + u * along_t.b + v * along_t.c;
     out_s[i] = is_shown ? s : out_s[i];
     out_t[i] = is_shown ? t : out_t[i];
@@ -168,14 +197,13 @@ std::uint32_t TileShading::find_texels(const Appearance& shown, std::size_t firs
     const auto whole_level = static_cast<std::int32_t>(std::clamp(level, 0.0F, highest));
     out_level[i] = is_shown ? whole_level : out_level[i];
   }
-  light_up(shown, first, sample.hits);
-  return lanes_of(surface, surfaces);
 }
 
 /// Keeps the irradiance of pixels that showed the same surface in the light sample before: it is smooth.
 void TileShading::light_up(const Appearance& shown, std::size_t first, const TileHits& hits) {
   const std::uint32_t lit = lanes_of(shown.surface, lit_surface_.data() + first);
   if ((lanes_of(shown.surface, hits.surface.data() + first) & ~lit) == 0) return;
+  one_is_lit_ = false;
   for (std::size_t at = first; at < first + kLanes; ++at) {
     if (hits.surface[at] != shown.surface || lit_surface_[at] == shown.surface) continue;
     const float u = hits.u[at], v = hits.v[at];
@@ -186,9 +214,14 @@ void TileShading::light_up(const Appearance& shown, std::size_t first, const Til
   }
 }
 
-void TileShading::read_texels(const TileHits& hits) {
-  PerPixel<const std::uint32_t*> texels;
-  PerPixel<std::int32_t> columns, rows;  // of the mip level: powers of two
+/// As `light_up`, of a tile that shows one surface whose light is baked.
+void TileShading::light_up_all(const Appearance& shown, const TileHits& hits) {
+  if (one_is_lit_ && lit_surface_[0] == shown.surface) return;
+  for (std::size_t first = 0; first < Tile::kPixels; first += kLanes) light_up(shown, first, hits);
+  one_is_lit_ = true;
+}
+
+void TileShading::find_mips() {
   static constexpr std::array<std::uint32_t, 2> kBlack{};
   Texture::Level mip{1, 1, kBlack.data()};
   std::int32_t texture = -1, level = 0;  // of `mip`
@@ -198,11 +231,14 @@ void TileShading::read_texels(const TileHits& hits) {
       mip = texture < 0 ? Texture::Level{1, 1, kBlack.data()}
                         : visible_.world->textures[static_cast<std::size_t>(texture)].level(level);
     }
-    texels[at] = mip.texels, columns[at] = mip.width, rows[at] = mip.height;
+    mip_[at] = mip.texels, columns_[at] = mip.width, rows_[at] = mip.height;
   }
+}
+
+void TileShading::read_texels(const TileHits& hits) {
   std::array<PerPixel<std::int32_t>, 2> index;
   for (std::size_t at = 0; at < Tile::kPixels; ++at) {
-    const std::int32_t width = columns[at], height = rows[at];
+    const std::int32_t width = columns_[at], height = rows_[at];
     const float x = s_[at] * static_cast<float>(width) - 0.5F, y = t_[at] * static_cast<float>(height) - 0.5F;
     const float floor_x = std::floor(x), floor_y = std::floor(y);
     const std::int32_t column = static_cast<std::int32_t>(floor_x) & (width - 1);
@@ -213,7 +249,7 @@ void TileShading::read_texels(const TileHits& hits) {
   }
   for (std::size_t at = 0; at < Tile::kPixels; ++at) {
     for (std::size_t row = 0; row < 2; ++row)
-      std::memcpy(&texels_[row][2 * at], texels[at] + index[row][at], 2 * sizeof(std::uint32_t));
+      std::memcpy(&texels_[row][2 * at], mip_[at] + index[row][at], 2 * sizeof(std::uint32_t));
   }
   if (!visible_.world->mesh.triangles.empty()) read_corner_colors(hits);
 }

@@ -36,8 +36,12 @@ struct MoverFrame {
 /// What can be seen in a frame.
 struct VisibleWorld {
   const World* world;
-  const MoverFrame* movers;           ///< may be null
-  std::vector<float> vertex_light{};  ///< irradiance, per vertex of the movers
+  const MoverFrame* movers;  ///< may be null
+  /// Per vertex of the movers, computed where it is first needed; negative: not yet.
+  std::vector<float> vertex_light{};
+
+  /// Irradiance at a vertex of the movers.
+  [[nodiscard]] float light(std::uint32_t vertex);
 };
 
 /// One light sample of each pixel of a tile.
@@ -53,7 +57,7 @@ struct TileSample {
 /// instructions; only texels and baked light are read one by one.
 class TileShading {
  public:
-  explicit TileShading(const VisibleWorld& visible) : visible_(visible) {
+  explicit TileShading(VisibleWorld& visible) : visible_(visible) {
     lit_surface_.fill(-1);
     irradiance_.fill(0.0F);
   }
@@ -70,24 +74,31 @@ class TileShading {
   template <class T>
   struct alignas(64) PerPixel : std::array<T, Tile::kPixels> {};
   struct Appearance;
-  [[nodiscard]] Appearance appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c) const;
-  [[nodiscard]] Appearance mover_appearance(std::size_t triangle) const;
+  [[nodiscard]] Appearance appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c);
+  [[nodiscard]] Appearance mover_appearance(std::size_t triangle);
   void find_texels(const TileSample& sample);
-  std::uint32_t find_texels(const Appearance& appearance, std::size_t first, const TileSample& sample);
+  template <std::size_t kPixels>
+  void find_texels(const Appearance& appearance, std::size_t first, const TileSample& sample);
   void light_up(const Appearance& appearance, std::size_t first, const TileHits& hits);
+  void light_up_all(const Appearance& appearance, const TileHits& hits);
+  void show_texels_of_one(const TileSample& sample);
+  void find_mips();
   void read_texels(const TileHits& hits);
   void read_corner_colors(const TileHits& hits);
   void blend(float weight);
 
-  const VisibleWorld& visible_;
+  VisibleWorld& visible_;
   PerPixel<float> s_, t_;           ///< texture coordinates
   PerPixel<std::int32_t> texture_;  ///< -1: none, or the colors of the corners of a triangle
   PerPixel<std::int32_t> level_;
-  PerPixel<float> weight_x_, weight_y_;  ///< of the right and the lower texels
+  PerPixel<const std::uint32_t*> mip_;         ///< its texels
+  PerPixel<std::int32_t> columns_{}, rows_{};  ///< of the mip level: powers of two
+  PerPixel<float> weight_x_, weight_y_;        ///< of the right and the lower texels
   /// The left and the right texel per pixel, of the upper and the lower row.
   alignas(64) std::array<std::array<std::uint32_t, 2 * Tile::kPixels>, 2> texels_{};
   PerPixel<float> irradiance_;
   PerPixel<std::int32_t> lit_surface_;  ///< of which `irradiance_` is
+  bool one_is_lit_ = false;             ///< lit_surface_ is the same in all pixels
   std::array<PerPixel<float>, 3> light_{};
 };
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace stillpoint::synth {
 
@@ -56,6 +57,7 @@ void Builder::add_box(const Vector3d& low, const Vector3d& high, int texture, do
   add_surface({low + x + z, y, -z}, texture, repeat_m);       // right
   add_surface({low + y + z, x, -y}, texture, repeat_m);       // top
   add_surface({low, x, y}, texture, repeat_m);                // bottom
+  close_last(6);
 }
 
 void Builder::add_labeled_box(const Vector3d& low, const Vector3d& high, const Label& front,
@@ -68,6 +70,11 @@ void Builder::add_labeled_box(const Vector3d& low, const Vector3d& high, const L
   add_surface({low + y + z, -y, -z}, side_texture, kRepeat_m);
   add_surface({low + x + z, y, -z}, side_texture, kRepeat_m);
   add_surface({low + y + z, x, -y}, side_texture, kRepeat_m);
+  close_last(5);  // by what it stands on
+}
+
+void Builder::close_last(std::size_t count) {
+  for (Quad& quad : std::span(world_.quads).last(count)) quad.one_sided = true;
 }
 
 void Builder::add_cylinder(const Cylinder& cylinder, int texture, double repeat_m) {

@@ -29,6 +29,7 @@ struct Quad {
         t_per_v = 1.0F;       ///< texture coordinates at the origin and their slopes over u, v in [0, 1]
   float texels_per_m = 1.0F;  ///< geometric mean of both directions
   bool emissive = false;      ///< shows its texture independent of the light: lamps and screens
+  bool one_sided = false;     ///< part of a closed surface: its back is not visible
   int light_first = 0, light_columns = 2,
       light_rows = 2;  ///< grid of this quad in World::light, see lightmap.h
 };
@@ -124,6 +125,8 @@ class Builder {
   void add_lamp(const Eigen::Vector3d& center, const Eigen::Vector2d& size, double power, int texture);
 
  private:
+  /// Marks the last added quads as those of a closed surface.
+  void close_last(std::size_t count);
   Eigen::Vector3d to_world(const Eigen::Vector3d& point) const;
   Eigen::Vector3d rotate(const Eigen::Vector3d& vector) const;
 
