@@ -137,7 +137,10 @@ void SensorMonitor::check_biases(ImuBuffer& imu, Window& window) {
   } else if (found.agrees) {
     inertial_.hold(false);
   }
-  if (found.has_step && has_inertial_prediction(window)) enlarge_bias_walk(biases_.measured(), window);
+  if (found.has_step) bias_step_ = biases_.measured();
+  if (!bias_step_ || !has_inertial_prediction(window)) return;
+  enlarge_bias_walk(*bias_step_, window);
+  bias_step_.reset();
 }
 
 void SensorMonitor::enlarge_bias_walk(const MeasuredBiases& measured, Window& window) const {
@@ -203,6 +206,7 @@ void SensorMonitor::window_restarted() {
   inertial_.reset();
   step_.reset();
   biases_.reset();
+  bias_step_.reset();
 }
 
 }  // namespace stillpoint

@@ -133,6 +133,7 @@ class SensorMonitor {
   InertialCheck inertial_;
   StepCheck step_;
   BiasMonitor biases_;
+  std::optional<MeasuredBiases> bias_step_;  ///< newest one, until inertial data is used again
   DepthMonitor depth_;
   FrameEvidence evidence_;   ///< of the last frame that was added
   Innovations innovations_;  ///< same

@@ -11,6 +11,17 @@
 namespace stillpoint {
 namespace {
 
+/// A landmark has been triangulated when it was seen in as many frames.
+constexpr std::size_t kMinObservations = 4;
+
+/// Depth in the newest frame, whose camera pose is T_c_w^-1; see FeatureView.
+double depth_of(const Landmark& landmark, const Window& window, const Pose& T_c_w) {
+  const double measured = landmark.observations.back().depth;
+  if (measured > 0.0 || landmark.inverse_depth <= 0.0 || landmark.observations.size() < kMinObservations)
+    return measured;
+  return std::max(0.0, (T_c_w * window.position(landmark)).z());
+}
+
 FeatureView view_of(const Window& window, Timestamp t, FeatureView view) {
   const WindowFrame& newest = window.frames.back();
   const NavState& before = window.frames[window.frames.size() - 2].state;
@@ -20,10 +31,11 @@ FeatureView view_of(const Window& window, Timestamp t, FeatureView view) {
   view.velocity_w = before.T_w_b.q * newest.from_previous->delta_v(before.gyro_bias, before.accel_bias);
   view.rotation_b = log_so3(newest.from_previous->delta_q(before.gyro_bias));
   view.points.clear();
+  const Pose T_c_w = window.T_w_c(window.newest()).inverse();
   for (const Landmark& landmark : window.landmarks) {
     if (landmark.last() != window.newest()) continue;
-    const Observation& last = landmark.observations.back();
-    view.points.push_back({landmark.id, last.bearing, last.depth, !landmark.dynamic});
+    view.points.push_back({landmark.id, landmark.observations.back().bearing,
+                           depth_of(landmark, window, T_c_w), !landmark.dynamic});
   }
   return view;
 }

@@ -27,7 +27,7 @@ struct FeatureView {
   struct Point {
     std::int64_t id = 0;
     Eigen::Vector2d bearing;
-    double depth = 0.0;  ///< measured [m]; 0 = not measured
+    double depth = 0.0;  ///< [m]: measured, or estimated so far; 0 = unknown
     bool is_static = true;
   };
   Timestamp t;                 ///< on the IMU clock
@@ -38,8 +38,9 @@ struct FeatureView {
   std::vector<Point> points;   ///< sorted by id
 };
 
-/// The views of the last frames, and their motion by PnP: features of one frame with measured depth, and
-/// their bearings in another one.
+/// The views of the last frames, and their motion by PnP: features of one frame with known depth, and their
+/// bearings in another one. A depth that was not measured is that of the landmark, which depends on the
+/// states of the window; in a wide space hardly any other feature is on a static object.
 class FeatureViews {
  public:
   struct Options {

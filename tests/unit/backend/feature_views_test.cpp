@@ -83,6 +83,24 @@ TEST(FeatureViews, AMotionNeedsAPartOfTheTrackedFeatures) {
   EXPECT_FALSE(pose_of_second(views, first, window_up_to(2)));
 }
 
+TEST(FeatureViews, ADepthThatWasNotMeasuredIsThatOfTheLandmark) {
+  const auto without_depth = [](int newest) {
+    Window window = window_up_to(newest);
+    for (Landmark& landmark : window.landmarks) {
+      for (Observation& observation : landmark.observations) observation.depth = 0.0;
+    }
+    return window;
+  };
+  FeatureViews young(view_options());
+  EXPECT_FALSE(pose_of_second(young, without_depth(2), without_depth(3)));
+  FeatureViews triangulated(view_options());
+  const Window second = without_depth(4);
+  const std::optional<VisualPose> found = pose_of_second(triangulated, without_depth(3), second);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->features, 40);
+  EXPECT_LT((found->T_w_b.p - second.frames.back().state.T_w_b.p).norm(), 1e-4);
+}
+
 TEST(FeatureViews, ConsistentMotionOfLessThanSevenTenthsIsNone) {
   for (const int moving : {8, 16}) {
     Window second = window_up_to(2);
