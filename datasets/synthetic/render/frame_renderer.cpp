@@ -287,16 +287,24 @@ void FrameRenderer::store(const RayPacket& packet, const Block& block, TileHits&
 
 void FrameRenderer::record_geometry(const Job& job, const Tile& tile, const TileHits& hits,
                                     RenderedFrame& frame) const {
+  std::int32_t shown = -1;  // the last surface that moves
+  float speed_m_per_s = 0.0F;
+  std::uint16_t object = 0;
   for_each_pixel(tile, [&](std::size_t at, int row, int column) {
     const std::int32_t surface = hits.surface[at];
     if (surface < 0) return;
     const std::size_t pixel = pixel_at(row, column);
     frame.depth_m[pixel] = 1.0F / hits.inverse_z[at];
     if ((surface & TileHits::kMoving) == 0) return;
-    const auto triangle = static_cast<std::size_t>(surface & ~TileHits::kMoving);
-    const MoverFrame& movers = *job.visible.movers;
-    frame.object[pixel] = static_cast<std::uint16_t>(movers.appearance[triangle].object);
-    frame.speed_m_per_s[pixel] = displacement_m(movers.mesh, triangle) / job.exposure->span_s;
+    if (surface != shown) {
+      const auto triangle = static_cast<std::size_t>(surface & ~TileHits::kMoving);
+      const MoverFrame& movers = *job.visible.movers;
+      object = static_cast<std::uint16_t>(movers.appearance[triangle].object);
+      speed_m_per_s = displacement_m(movers.mesh, triangle) / job.exposure->span_s;
+      shown = surface;
+    }
+    frame.object[pixel] = object;
+    frame.speed_m_per_s[pixel] = speed_m_per_s;
   });
 }
 

@@ -20,19 +20,34 @@ namespace stillpoint::synth {
 [[nodiscard]] float unshadowed_light(const World& world, const Eigen::Vector3f& point,
                                      const Eigen::Vector3f& normal);
 
-/// Bilinear interpolation of the baked irradiance of a quad at (u, v) in [0, 1]^2.
-[[nodiscard]] inline float baked_light(const World& world, const Quad& quad, float u, float v) {
+/// Between four nodes of a quad.
+struct LightCell {
+  std::int32_t node;         ///< the first, in World::light
+  float weight_x, weight_y;  ///< of the second along u and along v
+};
+
+/// Where (u, v) in [0, 1]^2 lies.
+[[nodiscard]] inline LightCell light_cell(const Quad& quad, float u, float v) {
   const float x = u * static_cast<float>(quad.light_columns - 1),
               y = v * static_cast<float>(quad.light_rows - 1);
-  const int column = std::clamp(static_cast<int>(x), 0, quad.light_columns - 2);
-  const int row = std::clamp(static_cast<int>(y), 0, quad.light_rows - 2);
-  const float weight_x = x - static_cast<float>(column), weight_y = y - static_cast<float>(row);
-  const float* lower =
-      world.light.data() + quad.light_first + std::ptrdiff_t{row} * quad.light_columns + column;
-  const float* upper = lower + quad.light_columns;
-  const float bottom = lower[0] + (lower[1] - lower[0]) * weight_x;
-  const float top = upper[0] + (upper[1] - upper[0]) * weight_x;
-  return bottom + (top - bottom) * weight_y;
+  const std::int32_t column = std::clamp(static_cast<std::int32_t>(x), 0, quad.light_columns - 2);
+  const std::int32_t row = std::clamp(static_cast<std::int32_t>(y), 0, quad.light_rows - 2);
+  return {quad.light_first + row * quad.light_columns + column, x - static_cast<float>(column),
+          y - static_cast<float>(row)};
+}
+
+/// Bilinear interpolation of the baked irradiance.
+[[nodiscard]] inline float light_in(const World& world, const Quad& quad, const LightCell& cell) {
+  const float* const lower = world.light.data() + cell.node;
+  const float* const upper = lower + quad.light_columns;
+  const float bottom = lower[0] + (lower[1] - lower[0]) * cell.weight_x;
+  const float top = upper[0] + (upper[1] - upper[0]) * cell.weight_x;
+  return bottom + (top - bottom) * cell.weight_y;
+}
+
+/// The baked irradiance of a quad at (u, v) in [0, 1]^2.
+[[nodiscard]] inline float baked_light(const World& world, const Quad& quad, float u, float v) {
+  return light_in(world, quad, light_cell(quad, u, v));
 }
 
 /// Computes `world.light` and the node grid of each quad in it.

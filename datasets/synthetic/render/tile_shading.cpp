@@ -23,25 +23,10 @@ float approximate_log2(float x) {
   return static_cast<float>((bits >> 23) - 127) + static_cast<float>(bits & 0x7fffff) * 0x1.0p-23F;
 }
 
-/// a + u b + v c.
-template <class T>
-struct Linear {
-  T a, b, c;
-
-  /// By the values at (0, 0), (1, 0) and (0, 1).
-  static Linear through(const T& a, const T& b, const T& c) { return {a, T(b - a), T(c - a)}; }
-};
-
 Vector3f normal_of(const StaticMesh& mesh, const MeshTriangle& triangle) {
   const Vector3f& corner = mesh.vertices[triangle.corners[0]];
   const Vector3f first = mesh.vertices[triangle.corners[1]] - corner;
   return first.cross(mesh.vertices[triangle.corners[2]] - corner);
-}
-
-/// Texture coordinates of a triangle.
-std::array<Linear<float>, 2> texture_coordinates(const std::array<Vector2f, 3>& uv) {
-  return {Linear<float>::through(uv[0].x(), uv[1].x(), uv[2].x()),
-          Linear<float>::through(uv[0].y(), uv[1].y(), uv[2].y())};
 }
 
 /// Which of some pixels show a surface, as bits.
@@ -53,16 +38,12 @@ std::uint32_t lanes_of(std::int32_t surface, const std::int32_t* surfaces) {
 
 }  // namespace
 
-/// What a surface shows, by its coordinates u and v.
-struct TileShading::Appearance {
-  std::int32_t surface = -1;  ///< see TileHits
-  Linear<Vector3f> normal;    ///< in camera coordinates, of any length
-  Linear<float> s, t;
-  Linear<float> irradiance{};   ///< unless baked
-  const Quad* baked = nullptr;  ///< whose light is baked
-  std::int32_t texture = -1, highest_level = 0;
-  float texels_per_m = 1.0F;
-};
+/// Of a triangle.
+std::array<TileShading::Linear<float>, 2> TileShading::texture_coordinates(
+    const std::array<Vector2f, 3>& uv) {
+  return {Linear<float>::through(uv[0].x(), uv[1].x(), uv[2].x()),
+          Linear<float>::through(uv[0].y(), uv[1].y(), uv[2].y())};
+}
 
 float VisibleWorld::light(std::uint32_t vertex) {
   float& light = vertex_light[vertex];
@@ -70,7 +51,15 @@ float VisibleWorld::light(std::uint32_t vertex) {
   return light;
 }
 
-TileShading::Appearance TileShading::appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c) {
+const TileShading::Appearance& TileShading::appearance(std::int32_t surface, const Eigen::Matrix3f* R_w_c) {
+  Appearance& kept = appearances_[static_cast<std::size_t>(surface) % kKept];
+  if (kept.surface == surface && kept.R_w_c == R_w_c) return kept;
+  kept = new_appearance(surface, *R_w_c);
+  kept.surface = surface, kept.R_w_c = R_w_c;
+  return kept;
+}
+
+TileShading::Appearance TileShading::new_appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c) {
   const World& world = *visible_.world;
   const auto number = static_cast<std::size_t>(surface & ~TileHits::kMoving);
   Appearance shown;
@@ -94,7 +83,6 @@ TileShading::Appearance TileShading::appearance(std::int32_t surface, const Eige
              .texture = triangle.texture,
              .texels_per_m = triangle.texels_per_m};
   }
-  shown.surface = surface;
   const Eigen::Matrix3f R_c_w = R_w_c.transpose();
   shown.normal.a = R_c_w * shown.normal.a;
   if ((surface & TileHits::kMoving) != 0)
@@ -131,16 +119,12 @@ void TileShading::add(const TileSample& sample, float weight) {
 void TileShading::find_texels(const TileSample& sample) {
   s_.fill(0.0F), t_.fill(0.0F);
   texture_.fill(-1), level_.fill(0);
-  Appearance shown;
-  const Eigen::Matrix3f* R_w_c = nullptr;
   for (std::size_t first = 0; first < Tile::kPixels; first += kLanes) {
     const std::int32_t* const surfaces = sample.hits.surface.data() + first;
     std::uint32_t left = kAllLanes & ~lanes_of(-1, surfaces);
     while (left != 0) {
       const std::int32_t surface = surfaces[std::countr_zero(left)];
-      const Eigen::Matrix3f* const rotation = sample.R_w_c[first / Tile::kColumns];
-      if (surface != shown.surface || rotation != R_w_c) shown = appearance(surface, *rotation);
-      R_w_c = rotation;
+      const Appearance& shown = appearance(surface, sample.R_w_c[first / Tile::kColumns]);
       find_texels<kLanes>(shown, first, sample);
       light_up(shown, first, sample.hits);
       left &= ~lanes_of(surface, surfaces);
@@ -150,7 +134,7 @@ void TileShading::find_texels(const TileSample& sample) {
 
 /// As `find_texels` and `find_mips`, of a tile that shows one surface.
 void TileShading::show_texels_of_one(const TileSample& sample) {
-  const Appearance shown = appearance(sample.hits.surface[0], *sample.R_w_c[0]);
+  const Appearance& shown = appearance(sample.hits.surface[0], sample.R_w_c[0]);
   texture_.fill(shown.texture);
   find_texels<Tile::kPixels>(shown, 0, sample);
   light_up_all(shown, sample.hits);
@@ -217,7 +201,16 @@ void TileShading::light_up(const Appearance& shown, std::size_t first, const Til
 /// As `light_up`, of a tile that shows one surface whose light is baked.
 void TileShading::light_up_all(const Appearance& shown, const TileHits& hits) {
   if (one_is_lit_ && lit_surface_[0] == shown.surface) return;
-  for (std::size_t first = 0; first < Tile::kPixels; first += kLanes) light_up(shown, first, hits);
+  PerPixel<std::int32_t> node;
+  PerPixel<float> weight_x, weight_y;
+  const Quad& quad = *shown.baked;
+  for (std::size_t at = 0; at < Tile::kPixels; ++at) {
+    const LightCell cell = light_cell(quad, hits.u[at], hits.v[at]);
+    node[at] = cell.node, weight_x[at] = cell.weight_x, weight_y[at] = cell.weight_y;
+  }
+  for (std::size_t at = 0; at < Tile::kPixels; ++at)
+    irradiance_[at] = light_in(*visible_.world, quad, {node[at], weight_x[at], weight_y[at]});
+  lit_surface_.fill(shown.surface);
   one_is_lit_ = true;
 }
 

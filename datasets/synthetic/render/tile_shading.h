@@ -73,8 +73,29 @@ class TileShading {
  private:
   template <class T>
   struct alignas(64) PerPixel : std::array<T, Tile::kPixels> {};
-  struct Appearance;
-  [[nodiscard]] Appearance appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c);
+  /// a + u b + v c.
+  template <class T>
+  struct Linear {
+    T a, b, c;
+
+    /// By the values at (0, 0), (1, 0) and (0, 1).
+    static Linear through(const T& a, const T& b, const T& c) { return {a, T(b - a), T(c - a)}; }
+  };
+  /// What a surface shows, by its coordinates u and v.
+  struct Appearance {
+    std::int32_t surface = -1;       ///< see TileHits
+    Linear<Eigen::Vector3f> normal;  ///< in camera coordinates, of any length
+    Linear<float> s, t;
+    Linear<float> irradiance{};   ///< unless baked
+    const Quad* baked = nullptr;  ///< whose light is baked
+    std::int32_t texture = -1, highest_level = 0;
+    float texels_per_m = 1.0F;
+    const Eigen::Matrix3f* R_w_c = nullptr;  ///< by which `normal` was rotated
+  };
+  static constexpr std::size_t kKept = 16;  ///< a power of two
+  static std::array<Linear<float>, 2> texture_coordinates(const std::array<Eigen::Vector2f, 3>& uv);
+  const Appearance& appearance(std::int32_t surface, const Eigen::Matrix3f* R_w_c);
+  [[nodiscard]] Appearance new_appearance(std::int32_t surface, const Eigen::Matrix3f& R_w_c);
   [[nodiscard]] Appearance mover_appearance(std::size_t triangle);
   void find_texels(const TileSample& sample);
   template <std::size_t kPixels>
@@ -88,8 +109,9 @@ class TileShading {
   void blend(float weight);
 
   VisibleWorld& visible_;
-  PerPixel<float> s_, t_;           ///< texture coordinates
-  PerPixel<std::int32_t> texture_;  ///< -1: none, or the colors of the corners of a triangle
+  std::array<Appearance, kKept> appearances_{};  ///< the last ones, by the low bits of the surface
+  PerPixel<float> s_, t_;                        ///< texture coordinates
+  PerPixel<std::int32_t> texture_;               ///< -1: none, or the colors of the corners of a triangle
   PerPixel<std::int32_t> level_;
   PerPixel<const std::uint32_t*> mip_;         ///< its texels
   PerPixel<std::int32_t> columns_{}, rows_{};  ///< of the mip level: powers of two

@@ -16,9 +16,10 @@ namespace {
 
 /// Vignetting factor v(theta) at a pixel.
 float lens_transmission(const Camera& camera, double vignetting, int row, int column) {
-  const double x = (column - camera.cx) / camera.fx, y = (row - camera.cy) / camera.fy;
-  const double cosine_squared = 1.0 / (1.0 + x * x + y * y);
-  return static_cast<float>(1.0 - vignetting * (1.0 - cosine_squared * cosine_squared));
+  const float x = static_cast<float>(column - camera.cx) / static_cast<float>(camera.fx);
+  const float y = static_cast<float>(row - camera.cy) / static_cast<float>(camera.fy);
+  const float cosine_squared = 1.0F / (1.0F + x * x + y * y);
+  return 1.0F - static_cast<float>(vignetting) * (1.0F - cosine_squared * cosine_squared);
 }
 
 }  // namespace
@@ -264,8 +265,11 @@ Detection false_detection(const cv::Size& image, RandomSequence& random) {
 std::vector<VisibleObject> visible_objects(const RenderedFrame& frame) {
   std::map<int, VisibleObject> found;
   for (int row = 0; row < frame.height; ++row) {
+    const std::uint16_t* const objects = frame.object.data() + std::ptrdiff_t{row} * frame.width;
+    if (std::all_of(objects, objects + frame.width, [](std::uint16_t object) { return object == 0; }))
+      continue;
     for (int column = 0; column < frame.width; ++column) {
-      const int object = frame.object[static_cast<std::size_t>(std::ptrdiff_t{row} * frame.width + column)];
+      const int object = objects[column];
       if (object == 0) continue;
       const auto [entry, is_new] = found.try_emplace(object);
       VisibleObject& visible = entry->second;
