@@ -178,6 +178,17 @@ cv::Mat in_depth_units(const cv::Mat& meters, double units_per_m) {
   return depth;
 }
 
+/// Measured inverse depths are larger than the true ones by `offset`; what is then no distance, or too far
+/// for 16 bits, is 0.
+void subtract_offset(cv::Mat& depth, double units_per_m, double offset) {
+  std::transform(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>(), depth.begin<std::uint16_t>(),
+                 [=](std::uint16_t raw) -> std::uint16_t {
+                   const double units = std::round(raw / (1.0 - offset * raw / units_per_m));
+                   const bool valid = units >= 1.0 && units <= std::numeric_limits<std::uint16_t>::max();
+                   return valid ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
+                 });
+}
+
 cv::Mat load_depth(const SequenceContent& content, std::size_t index) {
   const std::filesystem::path& file = content.frame_files[index].depth;
   cv::Mat depth = content.images ? content.images->depth(index) : read_depth(file);
@@ -190,6 +201,7 @@ cv::Mat load_depth(const SequenceContent& content, std::size_t index) {
     std::replace(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>(), content.no_depth_value,
                  std::uint16_t{0});
   }
+  if (rig.depth_offset != 0.0) subtract_offset(depth, rig.depth_units_per_m, rig.depth_offset);
   if (!content.info.depth_camera || content.raw_depth) return depth;
   return register_depth(depth, rig.depth_units_per_m, *content.info.depth_camera, rig.camera);
 }

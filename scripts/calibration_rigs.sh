@@ -7,7 +7,8 @@
 # the error of the stated values.
 #   scripts/calibration_rigs.sh PROGRAM TABLE.csv SEEDS SEQUENCE...     SEEDS such as "1 2 3"; "" prints TABLE.csv only
 # Of the imperfections of the sensors, depth_scaled, time_offset, gyro_scale, accel_scale and imu_misalignment change true
-# values; the others (noise, blur, bias, g-sensitivity, depth that is not registered) are in no parameter.
+# values, depth_bias and depth_shift those of the depth; the others (noise, blur, g-sensitivity, clock drift) are in no
+# parameter.
 set -euo pipefail
 program="$1" table="$2" seeds="$3"
 shift 3
@@ -15,7 +16,7 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
 keep=()
-for name in focal center distortion rolling_shutter depth_scale depth_intrinsics depth_pose extrinsics time_offset imu_intrinsics; do
+for name in focal center distortion rolling_shutter depth_scale depth_offset depth_intrinsics depth_pose extrinsics time_offset imu_intrinsics; do
   keep+=(--keep "$name")
 done
 
@@ -55,8 +56,20 @@ true_axes() {
       }'
 }
 
+# "X Y": displacement of the depth images in whole pixels, see datasets/faults/image_faults.cpp.
+depth_shift() {
+  local seed key
+  seed="$(grep -o "\"depth_shift:[^\"]*seed=[0-9]*" "$work/run/manifest.json" | sed 's/.*seed=//')"
+  key="$(mix_bits "$(mix_bits $((seed ^ (11 << 56))))")"
+  awk -v pixels="$(amount depth_shift)" -v bits=$((($(mix_bits "$key") >> 11) & 0x1fffffffffffff)) '
+    BEGIN { angle = bits / 2 ^ 53 * 6.283185307179586; printf "%.0f %.0f", pixels * cos(angle), pixels * sin(angle) }'
+}
+
 compare() { # SEQUENCE SEED: rows of the table from axes.csv, true.toml, found.toml and found.json
-  awk -v sequence="$1" -v seed="$2" -v scale="$(amount depth_scaled)" -v offset="$(amount time_offset)" '
+  awk -v sequence="$1" -v seed="$2" -v scale="$(amount depth_scaled)" -v offset="$(amount time_offset)" \
+    -v bias="$(amount depth_bias)" -v shift="$(depth_shift)" '
+    BEGIN { split(shift, pixels, " "); truth["depth shift x"] = pixels[1]; truth["depth shift y"] = pixels[2]
+            truth["depth offset"] = -bias }
     function numbers(text) { gsub(/[][,]/, " ", text); sub(/#.*/, "", text); return text }
     FILENAME ~ /csv$/ { split($0, axis_of, ","); truth[axis_of[1]] = axis_of[2]; next }
     FILENAME ~ /toml$/ && / = / {

@@ -47,7 +47,7 @@ std::vector<StatedField> stated_fields(const CalibrationInput& input) {
   fields.push_back({"[camera] distortion", {rig.camera.distortion.begin(), rig.camera.distortion.end()}});
   fields.push_back({"[camera] rolling_shutter_s", {rig.rolling_shutter_s}});
   fields.push_back({"[depth] scale", {rig.depth_units_per_m}});
-  fields.push_back({"offset of the inverse depth", {input.stated.depth_offset}});
+  fields.push_back({"[depth] offset", {rig.depth_offset}});
   fields.push_back({"delay of the depth", {input.stated.depth_delay_s}});
   if (!input.depth_is_registered) {
     add_camera("[depth]", input.stated.depth_camera, fields);

@@ -260,11 +260,21 @@ std::optional<DepthFactor::Measurement> BatchProblem::depth_of(const BatchObserv
   const double row_fraction = (seen.feature.pixel.y() + 0.5) / input_.stated.rig.camera.height - 0.5;
   const Eigen::Vector3d velocity = velocity_c(seen, p_w);
   std::optional<DepthFactor::Measurement> measurement;
+  const BatchKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(seen.keyframe)];
+  const SharedValues& shared = state_.shared;
+  const double units_per_m = input_.stated.rig.depth_units_per_m;
   if (options_.depth_is_registered) {
-    if (seen.feature.depth_m > 0.0) measurement.emplace().inverse_depth = 1.0 / seen.feature.depth_m;
+    const Camera& stated = input_.stated.depth_camera;
+    const Eigen::Vector2d center(stated.cx, stated.cy);
+    const Eigen::Vector2d displacement =
+        Eigen::Vector2d(shared.depth_camera[2], shared.depth_camera[3]) - center;
+    if (!keyframe.depth.empty()) {
+      measurement = depth_patch(keyframe.depth, units_per_m, seen.feature.pixel + displacement);
+    } else if (seen.feature.depth_m > 0.0) {
+      measurement.emplace().inverse_depth = 1.0 / seen.feature.depth_m;
+    }
+    if (measurement) measurement->registered_px = seen.feature.pixel - center;
   } else {
-    const BatchKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(seen.keyframe)];
-    const SharedValues& shared = state_.shared;
     const Pose T_w_c = pose_of(keyframe.pose) * pose_of(shared.T_b_c);
     const Eigen::Vector3d p_c =
         T_w_c.inverse() * p_w + (row_fraction * shared.readout_s + shared.depth_delay_s) * velocity;
@@ -273,7 +283,7 @@ std::optional<DepthFactor::Measurement> BatchProblem::depth_of(const BatchObserv
     const auto& camera = shared.depth_camera;
     const Eigen::Vector2d pixel(camera[0] * p_d.x() / p_d.z() + camera[2],
                                 camera[1] * p_d.y() / p_d.z() + camera[3]);
-    measurement = depth_patch(keyframe.depth, input_.stated.rig.depth_units_per_m, pixel);
+    measurement = depth_patch(keyframe.depth, units_per_m, pixel);
   }
   if (!measurement) return std::nullopt;
   measurement->velocity_c = velocity;

@@ -29,7 +29,7 @@ SharedValues shared_values(const RigCalibration& calibration) {
   const Camera& depth = calibration.depth_camera;
   SharedValues shared{.camera = {camera.fx, camera.fy, camera.cx, camera.cy},
                       .readout_s = calibration.rig.rolling_shutter_s,
-                      .depth = {1.0, calibration.depth_offset},
+                      .depth = {1.0, 0.0},
                       .depth_camera = {depth.fx, depth.fy, depth.cx, depth.cy},
                       .T_b_c = values_of(calibration.rig.T_b_c),
                       .T_c_d = values_of(calibration.T_c_d),
@@ -54,7 +54,8 @@ RigCalibration rig_calibration(const SharedValues& shared, const RigCalibration&
   result.rig.time_offset_s = shared.time_offset_s;
   const ImuAxes axes = axes_of(shared.imu_axes);
   result.rig.imu_axes = {stated.rig.imu_axes.gyro * axes.gyro, stated.rig.imu_axes.accel * axes.accel};
-  result.depth_offset = shared.depth[1];
+  // 1/z = (rho - o_stated - o) s, of the measured inverse depth rho in stated units.
+  result.rig.depth_offset = shared.depth[0] * (stated.rig.depth_offset + shared.depth[1]);
   result.depth_camera.fx = shared.depth_camera[0];
   result.depth_camera.fy = shared.depth_camera[1];
   result.depth_camera.cx = shared.depth_camera[2];

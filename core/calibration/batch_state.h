@@ -21,7 +21,7 @@ using SpeedBiasValues = std::array<double, 9>;  ///< v, gyro bias, accel bias
 struct SharedValues {
   std::array<double, kCameraValues> camera{};
   double readout_s = 0.0;
-  std::array<double, 2> depth = {1.0, 0.0};  ///< scale relative to the stated one, offset [1/m]
+  std::array<double, 2> depth = {1.0, 0.0};  ///< scale and offset [1/m], relative to the stated ones
   std::array<double, 4> depth_camera{};
   PoseValues T_b_c{}, T_c_d{};
   double time_offset_s = 0.0;
@@ -32,7 +32,7 @@ struct SharedValues {
 };
 
 [[nodiscard]] SharedValues shared_values(const RigCalibration& calibration);
-/// @param stated from which the depth scale is counted
+/// @param stated from which scale and offset of the depth are counted
 [[nodiscard]] RigCalibration rig_calibration(const SharedValues& shared, const RigCalibration& stated);
 
 [[nodiscard]] PoseValues values_of(const Pose& pose);

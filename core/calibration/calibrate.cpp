@@ -32,6 +32,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Description of a shared value. The systematic deviations are those of recordings of 640x480 pixels whose
 /// halves agree: tracking has a bias of up to half a pixel on rendered sequences with an exact calibration.
+/// That of the depth scale is what recorded accelerometers, to which it is compared, are off.
 struct SharedDescription {
   const char* name;
   const char* unit;
@@ -43,12 +44,12 @@ constexpr double kSystematicWidth_px = 640.0;
 constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"fx", "px", 1.0, 7e-4},
     {"fy", "px", 1.0, 7e-4},
-    {"cx", "px", 1.0, 0.3},
-    {"cy", "px", 1.0, 0.3},
+    {"cx", "px", 1.0, 0.4},
+    {"cy", "px", 1.0, 0.4},
     {"k1", "", 1.0, 1e-3},
     {"k2", "", 1.0, 2e-3},
     {"rolling_shutter_s", "ms", 1e3, 3e-4},
-    {"depth scale", "", 1.0, 5e-3},
+    {"depth scale", "", 1.0, 1e-2},
     {"depth offset", "1/m", 1.0, 1e-3},
     {"depth fx", "px", 1.0, 2e-3},
     {"depth fy", "px", 1.0, 2e-3},
@@ -60,16 +61,16 @@ constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"T_c_d rotation x", "deg", kDegrees, 3e-4},
     {"T_c_d rotation y", "deg", kDegrees, 3e-4},
     {"T_c_d rotation z", "deg", kDegrees, 3e-4},
-    {"T_b_c x", "mm", 1e3, 1e-3},
-    {"T_b_c y", "mm", 1e3, 1e-3},
-    {"T_b_c z", "mm", 1e3, 1e-3},
+    {"T_b_c x", "mm", 1e3, 2e-3},
+    {"T_b_c y", "mm", 1e3, 2e-3},
+    {"T_b_c z", "mm", 1e3, 2e-3},
     {"T_b_c rotation x", "deg", kDegrees, 3e-4},
     {"T_b_c rotation y", "deg", kDegrees, 3e-4},
     {"T_b_c rotation z", "deg", kDegrees, 3e-4},
     {"time_offset_s", "ms", 1e3, 2e-4},
-    {"gyro scale x", "%", 1e2, 5e-4},
-    {"gyro scale y", "%", 1e2, 5e-4},
-    {"gyro scale z", "%", 1e2, 5e-4},
+    {"gyro scale x", "%", 1e2, 7e-4},
+    {"gyro scale y", "%", 1e2, 7e-4},
+    {"gyro scale z", "%", 1e2, 7e-4},
     {"gyro axes xy", "deg", kDegrees, 3e-4},
     {"gyro axes xz", "deg", kDegrees, 3e-4},
     {"gyro axes yz", "deg", kDegrees, 3e-4},
@@ -89,7 +90,9 @@ constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"truth delay", "ms", 1e3, 2e-4},
 }};
 
-/// A bias in pixels is a larger angle, and a larger fraction of the focal length, in a smaller image.
+/// A bias in pixels is a larger angle, and a larger fraction of the focal length, in a smaller image; so is
+/// what is compared with angles: the lever arm by the motion that it causes, the axes of inertial sensors by
+/// the turns of the camera.
 double systematic_sigma(SharedValue value, const RigCalibration& stated) {
   const SharedValues values = shared_values(stated);
   const double sigma = kDescriptions[static_cast<std::size_t>(value)].systematic;
@@ -98,13 +101,14 @@ double systematic_sigma(SharedValue value, const RigCalibration& stated) {
   if (value == kFx || value == kFy) return color * sigma * values.camera[value == kFx ? 0 : 1];
   if (value == kDepthFx || value == kDepthFy)
     return scale(stated.depth_camera) * sigma * values.depth_camera[value == kDepthFx ? 0 : 1];
-  const auto is_rotation = [value](SharedValue pose) {
-    const int component = static_cast<int>(value) - static_cast<int>(pose);
-    return component >= 3 && component < 6;
+  const auto is_of = [value](SharedValue first, int begin, int end) {
+    const int component = static_cast<int>(value) - static_cast<int>(first);
+    return component >= begin && component < end;
   };
-  const bool is_angle = value == kK1 || value == kK2 || is_rotation(kDepthPose) || is_rotation(kExtrinsics) ||
-                        is_rotation(kTruthPose);
-  return is_angle ? color * sigma : sigma;
+  const bool is_scaled = value == kK1 || value == kK2 || is_of(kDepthPose, 3, 6) ||
+                         is_of(kExtrinsics, 0, 6) || is_of(kImuAxes, 0, kImuAxesCount) ||
+                         is_of(kTruthPose, 3, 6);
+  return is_scaled ? color * sigma : sigma;
 }
 
 void set(SharedFlags& flags, SharedValue first, int count, bool value) {
@@ -121,7 +125,8 @@ SharedFlags variable_values(const CalibrationSwitches& estimate, const Calibrati
   set(flags, kReadout, 1, estimate.rolling_shutter);
   set(flags, kDepthScale, 1, estimate.depth_scale && (inertial || has_truth));
   set(flags, kDepthOffset, 1, estimate.depth_offset);
-  set(flags, kDepthFx, 4, estimate.depth_intrinsics && !input.depth_is_registered);
+  set(flags, kDepthFx, 2, estimate.depth_intrinsics && !input.depth_is_registered);
+  set(flags, kDepthCx, 2, estimate.depth_intrinsics);
   set(flags, kDepthPose, 6, estimate.depth_pose && !input.depth_is_registered);
   set(flags, kDepthDelay, 1, estimate.depth_pose && !input.depth_is_registered);
   set(flags, kExtrinsics, 6, estimate.extrinsics && inertial);
@@ -315,7 +320,6 @@ bool set_back_unobserved(Solution& solution, const RigCalibration& stated, const
   for (std::size_t i = 0; i < 6; ++i) visit(static_cast<SharedValue>(i), to.camera[i], from.camera[i]);
   visit(kReadout, to.readout_s, from.readout_s);
   visit(kDepthScale, to.depth[0], from.depth[0]);
-  visit(kDepthOffset, to.depth[1], from.depth[1]);
   visit(kTimeOffset, to.time_offset_s, from.time_offset_s);
   visit(kDepthDelay, to.depth_delay_s, from.depth_delay_s);
   return changed;
@@ -379,7 +383,7 @@ class Calibration {
     const SharedFlags wanted = is_variable_;
     estimate_all();
     if (options_.hold_out && !rounds_.interrupted() && solution_.sigmas) estimate_halves();
-    set_back_axes();
+    set_back_last();
     describe();
     list_parameters(wanted);
     return std::move(result_);
@@ -424,18 +428,27 @@ class Calibration {
       observed_ = observed_values(result_.deviation_factor * *solution_.sigmas, priors_, observed_);
   }
 
-  /// Axes of the inertial sensors that are not observed get the stated values, in one more round. The
-  /// deviations of the other values are those before it: they contain the errors of the stated axes, by their
-  /// priors.
-  void set_back_axes() {
+  /// Axes of the inertial sensors, offset of the depth and center of registered depth images that are not
+  /// observed get the stated values, in one more round. The deviations of the other values are those before
+  /// it: they contain the errors of these stated values, by their priors.
+  void set_back_last() {
     if (!solution_.sigmas || rounds_.interrupted()) return;
+    const SharedValues from = shared_values(input_.stated);
+    SharedValues& to = solution_.state.shared;
     bool changed = false;
-    for (std::size_t i = 0; i < std::size_t{kImuAxesCount}; ++i) {
-      const std::size_t value = static_cast<std::size_t>(kImuAxes) + i;
-      if (!is_variable_[value] || observed_[value]) continue;
-      is_variable_[value] = false;
-      solution_.state.shared.imu_axes[i] = 0.0;
+    const auto visit = [&](SharedValue value, double& number, double stated_number) {
+      const auto k = static_cast<std::size_t>(value);
+      if (!is_variable_[k] || observed_[k]) return;
+      is_variable_[k] = false;
+      number = stated_number;
       changed = true;
+    };
+    for (std::size_t i = 0; i < std::size_t{kImuAxesCount}; ++i)
+      visit(static_cast<SharedValue>(static_cast<std::size_t>(kImuAxes) + i), to.imu_axes[i], 0.0);
+    visit(kDepthOffset, to.depth[1], from.depth[1]);
+    if (input_.depth_is_registered) {
+      visit(kDepthCx, to.depth_camera[2], from.depth_camera[2]);
+      visit(kDepthCy, to.depth_camera[3], from.depth_camera[3]);
     }
     if (changed) rounds_.run_round(solution_, is_variable_, rounds_.count());
   }
@@ -457,9 +470,19 @@ class Calibration {
   }
 
   void list_parameters(SharedFlags listed) {
-    const SharedVector values = vector_of(solution_.state.shared, input_.stated);
-    const SharedVector stated = vector_of(shared_values(input_.stated), input_.stated);
-    set(listed, kDepthScale, 1, options_.estimate.depth_scale && result_.depths > 0);
+    SharedVector values = vector_of(solution_.state.shared, input_.stated);
+    SharedVector stated = vector_of(shared_values(input_.stated), input_.stated);
+    const bool has_depth = result_.depths > 0;
+    set(listed, kDepthScale, 1, options_.estimate.depth_scale && has_depth);
+    set(listed, kDepthOffset, 1, options_.estimate.depth_offset && has_depth);
+    for (SharedVector* const offset : {&values, &stated})
+      (*offset)[static_cast<int>(kDepthOffset)] += input_.stated.rig.depth_offset;
+    if (input_.depth_is_registered) {  // how far the depth image is displaced
+      set(listed, kDepthCx, 2, options_.estimate.depth_intrinsics && has_depth);
+      const auto center = Eigen::seqN(static_cast<int>(kDepthCx), 2);
+      values(center) -= stated(center).eval();
+      stated(center).setZero();
+    }
     for (int i = 0; i < kSharedCount; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (!listed[k]) continue;
@@ -469,7 +492,7 @@ class Calibration {
       const double sigma = is_observed
                                ? std::hypot(result_.deviation_factor * (*solution_.sigmas)[i], systematic)
                                : priors_[i];
-      result_.parameters.push_back({.name = description.name,
+      result_.parameters.push_back({.name = name_of(static_cast<SharedValue>(i)),
                                     .unit = description.unit,
                                     .value = description.factor * values[i],
                                     .sigma = description.factor * sigma,
@@ -477,6 +500,12 @@ class Calibration {
                                     .prior_sigma = description.factor * priors_[i],
                                     .outcome = outcome_of(values[i] - stated[i], sigma, is_observed)});
     }
+  }
+
+  [[nodiscard]] std::string name_of(SharedValue value) const {
+    if (input_.depth_is_registered && value == kDepthCx) return "depth shift x";
+    if (input_.depth_is_registered && value == kDepthCy) return "depth shift y";
+    return kDescriptions[static_cast<std::size_t>(value)].name;
   }
 
   const CalibrationInput& input_;

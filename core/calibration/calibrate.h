@@ -40,8 +40,8 @@
 /// the priors. What both halves have in common is added as a constant per parameter, see calibrate.cpp.
 ///
 /// Values that are not observed get the stated ones, and the others are estimated once more: with deviations
-/// as if the stated ones were true, but for axes of inertial sensors, which are off by their priors even in
-/// good rigs.
+/// as if the stated ones were true, but for axes of inertial sensors, offset and displacement of the depth,
+/// which are off by their priors even in good rigs.
 #pragma once
 
 #include <cstddef>
@@ -61,7 +61,6 @@ namespace stillpoint {
 /// Calibration of a rig, with what `Rig` lacks.
 struct RigCalibration {
   Rig rig;                     ///< `depth_units_per_m` includes the scale of the depth
-  double depth_offset = 0.0;   ///< measured minus true inverse depth [1/m]
   Camera depth_camera;         ///< of depth images that are not registered, else that of the rig
   Pose T_c_d;                  ///< depth camera to color camera
   double depth_delay_s = 0.0;  ///< exposure of the depth image minus that of the color image
@@ -74,9 +73,9 @@ struct CalibrationSwitches {
   bool distortion = true;  ///< the first two coefficients of the model of the rig
   bool rolling_shutter = true;
   bool depth_scale = true;  ///< with inertial data only
-  bool depth_offset = false;
-  bool depth_intrinsics = true;  ///< of depth images that are not registered; as the next
-  bool depth_pose = true;        ///< and the delay of its images
+  bool depth_offset = true;
+  bool depth_intrinsics = true;  ///< of depth images that are not registered; of others the displacement
+  bool depth_pose = true;        ///< of depth images that are not registered, and their delay
   bool extrinsics = true;        ///< with inertial data only, as the next
   bool time_offset = true;
   bool imu_intrinsics = true;  ///< scale and misalignment of gyroscope and accelerometer
@@ -91,8 +90,9 @@ struct CalibrationPriors {
   double distortion = 0.1;  ///< of each coefficient
   double rolling_shutter_s = 0.02;
   double depth_scale = 0.15;
-  double depth_offset = 0.02;  ///< [1/m]
-  double depth_focal = 0.05;   ///< relative
+  double depth_offset =
+      0.005;  ///< [1/m]: 0.2 px of disparity at a product of focal length and baseline of 40 px m
+  double depth_focal = 0.05;  ///< relative
   double depth_center_px = 10.0;
   double rotation_rad = 0.035;  ///< 2 deg; of T_b_c and T_c_d
   double lever_m = 0.03;

@@ -188,11 +188,15 @@ bool DepthFactor::Evaluate(double const* const* x, double* residuals, double** j
   const double inverse_z = 1.0 / (in_front ? p_d.z() : kNearestPoint_m);
   const Eigen::Vector2d plane = inverse_z * p_d.head<2>();
   const Eigen::Vector2d& g = measurement_.gradient;
-  const Eigen::Vector2d u(camera[0] * plane.x() + camera[2], camera[1] * plane.y() + camera[3]);
+  const std::optional<Eigen::Vector2d>& registered_px = measurement_.registered_px;
+  const Eigen::Vector2d u =
+      Eigen::Vector2d(camera[2], camera[3]) +
+      (registered_px ? *registered_px : Eigen::Vector2d(camera[0] * plane.x(), camera[1] * plane.y()));
   residuals[0] =
       weight_ * (inverse_z / scale + x[4][1] - measurement_.inverse_depth - g.dot(u - measurement_.pixel));
   if (jacobians == nullptr) return true;
-  const Eigen::Vector2d slope(g.x() * camera[0], g.y() * camera[1]);
+  Eigen::Vector2d slope(g.x() * camera[0], g.y() * camera[1]);
+  if (registered_px) slope.setZero();
   const Eigen::RowVector3d J_d =
       weight_ * inverse_z *
       Eigen::RowVector3d(-slope.x(), -slope.y(), in_front ? slope.dot(plane) - inverse_z / scale : 0.0);
@@ -203,8 +207,10 @@ bool DepthFactor::Evaluate(double const* const* x, double* residuals, double** j
   J_depth_pose << -J, J_d * skew(p_d);
   write_by_pose<1>(jacobians[2], J_depth_pose);
   if (jacobians[3] != nullptr) {
+    Eigen::Vector2d by_focal = g.cwiseProduct(plane);
+    if (registered_px) by_focal.setZero();
     Eigen::Map<Eigen::RowVector4d>{jacobians[3]} =
-        -weight_ * Eigen::RowVector4d(g.x() * plane.x(), g.y() * plane.y(), g.x(), g.y());
+        -weight_ * Eigen::RowVector4d(by_focal.x(), by_focal.y(), g.x(), g.y());
   }
   if (jacobians[4] != nullptr) {
     jacobians[4][0] = -weight_ * inverse_z / (scale * scale);

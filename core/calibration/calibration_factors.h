@@ -54,8 +54,12 @@ class PixelFactor final : public ceres::SizedCostFunction<2, 7, 7, kCameraValues
 ///
 ///   r = (1 / (s z) + o - rho_0 - g . (u(p_d) - u_0)) / sigma
 /// The depth image is late by t_d, and read out like the color image: with the velocity v_c of the landmark
-/// in the camera frame, p_c is that of the middle row of the color image plus (a T + t_d) v_c. For a
-/// registered depth image g = 0, T_c_d is the identity, and t_d = 0.
+/// in the camera frame, p_c is that of the middle row of the color image plus (a T + t_d) v_c.
+///
+/// For a registered depth image T_c_d is the identity, t_d = 0, and u is the pixel u_c of the landmark in the
+/// color image, displaced by c_d - c, with the centers c_d of `depth_camera` and c that is stated:
+///
+///   u = u_c + c_d - c
 class DepthFactor final : public ceres::SizedCostFunction<1, 7, 7, 7, 4, 2, 3, 1, 1> {
  public:
   struct Measurement {
@@ -64,6 +68,7 @@ class DepthFactor final : public ceres::SizedCostFunction<1, 7, 7, 7, 4, 2, 3, 1
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();       ///< u_0 [px]
     Eigen::Vector3d velocity_c = Eigen::Vector3d::Zero();  ///< v_c [m/s]
     double row_fraction = 0.0;                             ///< a, of the color image
+    std::optional<Eigen::Vector2d> registered_px = {};     ///< u_c - c, of a registered depth image
   };
 
   /// @param sigma of the inverse depth [1/m]

@@ -62,6 +62,9 @@ struct ImuHealth {
 struct Rig {
   Camera camera;
   double depth_units_per_m = 1000.0;  ///< raw depth value corresponding to 1 m
+  /// Measured minus true inverse depth [1/m], by which the depth images of a sequence were corrected when
+  /// they were read.
+  double depth_offset = 0.0;
   bool has_imu = false;
   Pose T_b_c;  ///< camera to body; identity if there is no IMU
   ImuNoise imu_noise;

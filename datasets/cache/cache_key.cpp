@@ -168,6 +168,7 @@ std::uint64_t cache_key(const SequenceContent& content, std::span<const FrameDig
   bits.add(kDecodingVersion);
   bits.add(content.info.rig.camera);
   bits.add(content.info.rig.depth_units_per_m);
+  if (content.info.rig.depth_offset != 0.0) bits.add(content.info.rig.depth_offset);
   bits.add(std::uint64_t{content.no_depth_value});
   bits.add(std::uint64_t{content.info.depth_camera.has_value()});
   if (content.info.depth_camera) {

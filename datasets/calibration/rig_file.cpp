@@ -195,9 +195,11 @@ Eigen::Matrix3d axes_of(const Section& section, std::string_view key, const Eige
   return axes;
 }
 
+constexpr double kLargestDepthOffset = 0.2;  // [1/m]: 20 % at 1 m
+
 /// The camera of depth images that are not registered; must be given completely.
 std::optional<DepthCamera> depth_camera_of(const Section& depth) {
-  depth.allow_only({"scale", "width", "height", "fx", "fy", "cx", "cy", "T_c_d"});
+  depth.allow_only({"scale", "offset", "width", "height", "fx", "fy", "cx", "cy", "T_c_d"});
   const std::vector<std::string_view> keys = {"width", "height", "fx", "fy", "cx", "cy", "T_c_d"};
   const auto is_given = [&](std::string_view key) { return depth.find(key) != nullptr; };
   if (std::ranges::none_of(keys, is_given)) return {};
@@ -232,6 +234,9 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
     camera.fail(*shutter, "rolling_shutter_s", "must not be negative");
   }
   result.rig.depth_units_per_m = depth.positive("scale", rig.depth_units_per_m);
+  result.rig.depth_offset = depth.number("offset", rig.depth_offset);
+  if (std::abs(result.rig.depth_offset) > kLargestDepthOffset)
+    depth.fail(*depth.find("offset"), "offset", "must be within 0.2: it is in 1/m, of the inverse depth");
   if (result.has_extrinsic) result.rig.T_b_c = pose_of(imu, "T_b_c");
   result.rig.imu_noise = ImuNoise{.gyro_noise = imu.positive("gyro_noise", rig.imu_noise.gyro_noise),
                                   .accel_noise = imu.positive("accel_noise", rig.imu_noise.accel_noise),

@@ -22,7 +22,7 @@ struct OverriddenRig {
 
 /// Replaces the values of `rig` that the file sets:
 ///   [camera] width height fx fy cx cy model distortion rolling_shutter_s    (px, s; model as in enum_names)
-///   [depth]  scale                                                          (raw units per meter)
+///   [depth]  scale offset                                  (raw units per meter; `Rig::depth_offset`, 1/m)
 ///            width height fx fy cx cy T_c_d          (camera of depth images that are not registered; px)
 ///   [imu]    T_b_c gyro_noise accel_noise gyro_walk accel_walk time_offset_s gyro_axes accel_axes
 /// T_b_c and T_c_d are 4x4 matrices in row-major order, gyro_axes and accel_axes 3x3 ones (`ImuAxes`); the
@@ -36,8 +36,8 @@ struct OverriddenRig {
 /// Others are wrong units, or swapped axes.
 [[nodiscard]] bool are_plausible_axes(const Eigen::Matrix3d& axes);
 
-/// A rig file with all values of `rig` but `imu_axes`, as samples that are written with it are corrected
-/// already; numbers are exact.
+/// A rig file with all values of `rig` but `imu_axes` and `depth_offset`, as samples and images that are
+/// written with it are corrected already; numbers are exact.
 /// @param with_extrinsic whether to write T_b_c, whose rotation is rounded when it is read
 [[nodiscard]] std::string rig_file_text(const Rig& rig, bool with_extrinsic = true);
 

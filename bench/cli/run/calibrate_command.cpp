@@ -56,12 +56,13 @@ struct NamedSwitch {
   std::string_view name;
   bool CalibrationSwitches::*value;
 };
-constexpr std::array<NamedSwitch, 10> kSwitches = {
+constexpr std::array<NamedSwitch, 11> kSwitches = {
     {{"focal", &CalibrationSwitches::focal},
      {"center", &CalibrationSwitches::center},
      {"distortion", &CalibrationSwitches::distortion},
      {"rolling_shutter", &CalibrationSwitches::rolling_shutter},
      {"depth_scale", &CalibrationSwitches::depth_scale},
+     {"depth_offset", &CalibrationSwitches::depth_offset},
      {"depth_intrinsics", &CalibrationSwitches::depth_intrinsics},
      {"depth_pose", &CalibrationSwitches::depth_pose},
      {"extrinsics", &CalibrationSwitches::extrinsics},

@@ -220,7 +220,9 @@ std::string calibrated_rig_text(const CalibrationSubject& subject, const Calibra
   lines.add("rolling_shutter_s", std::max(0.0, rig.rolling_shutter_s));
   lines.add_line("\n[depth]");
   lines.add("scale", rig.depth_units_per_m, "depth scale");
-  lines.add_comment("depth offset");
+  lines.add("offset", rig.depth_offset, "depth offset");
+  lines.add_comment("depth shift x");
+  lines.add_comment("depth shift y");
   if (subject.has_depth_camera) {
     const Camera& camera = result.calibration.depth_camera;
     lines.add_text("width", fmt::format("{}", camera.width));
@@ -251,6 +253,9 @@ std::string calibration_file_text(const CalibrationSubject& subject, const Calib
   if (format == datasets::RigFormat::kStillpoint) return calibrated_rig_text(subject, result);
   std::string text = datasets::rig_text(result.calibration.rig, format);
   // At the end: OpenCV requires the first line of YAML files.
+  if (const double offset = result.calibration.rig.depth_offset; offset != 0.0)
+    text +=
+        fmt::format("# inverse depths are {:.4f} 1/m too large, which this format does not state\n", offset);
   for (const std::string& line : remarks(subject, result)) text += "# " + line + '\n';
   return text;
 }

@@ -74,6 +74,7 @@ Rig rig_of(const SynthRequest& request) {
   rig.has_imu = request.layout == SequenceLayout::kOpenLoris;
   rig.imu_noise = request.imu.noise;
   rig.imu_axes = {};            // those of the rendered samples are exact
+  rig.depth_offset = 0.0;       // as is the rendered depth
   rig.time_offset_s = 0.0;      // a rendered delay is not part of the calibration that is written,
   rig.rolling_shutter_s = 0.0;  // nor is the read-out time
   return rig;

@@ -53,13 +53,15 @@ std::pair<const Panel*, double> nearest_panel(const Eigen::Vector3d& from, const
   return {&kWall, (kWall.x - from.x()) / direction.x()};
 }
 
-cv::Mat depth_image(const Pose& T_w_d, const Camera& camera) {
+cv::Mat depth_image(const Pose& T_w_d, const Camera& camera, double offset) {
   cv::Mat depth = cv::Mat::zeros(camera.height, camera.width, CV_16UC1);
   for (int row = 0; row < camera.height; ++row) {
     for (int column = 0; column < camera.width; ++column) {
       const Eigen::Vector3d ray((column - camera.cx) / camera.fx, (row - camera.cy) / camera.fy, 1.0);
       const double z = distance_to_wall(T_w_d.p, T_w_d.q * ray);
-      if (z < 8.0) depth.at<std::uint16_t>(row, column) = static_cast<std::uint16_t>(std::lround(kUnits * z));
+      const double measured = 1.0 / (1.0 / z + offset);
+      if (z < 8.0)
+        depth.at<std::uint16_t>(row, column) = static_cast<std::uint16_t>(std::lround(kUnits * measured));
     }
   }
   return depth;
@@ -71,7 +73,9 @@ Camera true_depth_camera() {
 Pose true_T_c_d() { return {exp_so3({0.004, 0.012, 0.008}), {-0.025, 0.002, 0.0}}; }
 
 /// Points on the walls, as the color camera tracks them.
-CalibrationInput room_recording() {
+/// @param offset of the measured inverse depths [1/m]
+CalibrationInput room_recording(const Pose& T_c_d = true_T_c_d(),
+                                const Camera& depth_camera = true_depth_camera(), double offset = 0.0) {
   const Rig rig = SimulatedMotion::rig();
   Random random(3);
   std::vector<Eigen::Vector3d> points;
@@ -86,8 +90,7 @@ CalibrationInput room_recording() {
   CalibrationSection& section = input.sections.emplace_back();
   for (int k = 0; k < 50; ++k) {
     const Pose T_w_c = SimulatedMotion::state(0.2 * k).T_w_b * rig.T_b_c;
-    CalibrationKeyframe keyframe{.T_w_c = T_w_c,
-                                 .depth = depth_image(T_w_c * true_T_c_d(), true_depth_camera())};
+    CalibrationKeyframe keyframe{.T_w_c = T_w_c, .depth = depth_image(T_w_c * T_c_d, depth_camera, offset)};
     keyframe.state.t = from_seconds(0.2 * k);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d p_c = T_w_c.inverse() * points[i];
@@ -225,6 +228,28 @@ TEST(DepthCamera, KeepsItsStatedIntrinsicsIfWanted) {
       input, {.estimate = {.rolling_shutter = false, .depth_intrinsics = false}, .hold_out = false});
   EXPECT_EQ(result.calibration.depth_camera.fx, 560.0);
   EXPECT_LT((result.calibration.T_c_d.p - true_T_c_d().p).norm(), 0.003);
+}
+
+TEST(RegisteredDepth, ItsDisplacementAndOffsetAreFound) {
+  const Camera color = SimulatedMotion::rig().camera;
+  Camera displaced = color;
+  displaced.cx += 3.0;
+  displaced.cy -= 2.0;
+  CalibrationInput input = room_recording(Pose{}, displaced, -0.006);
+  input.depth_is_registered = true;
+  const CalibrationResult result =
+      calibrate(input, {.estimate = {.rolling_shutter = false}, .hold_out = false});
+  const auto expect_near = [&](const std::string& name, double truth, double most) {
+    const auto estimate = std::ranges::find(result.parameters, name, &ParameterEstimate::name);
+    ASSERT_NE(estimate, result.parameters.end());
+    EXPECT_NE(estimate->outcome, ParameterOutcome::kNotObserved) << name;
+    EXPECT_NEAR(estimate->value, truth, std::min(most, 3.0 * estimate->sigma)) << name;
+  };
+  expect_near("depth shift x", 3.0, 1.0);
+  expect_near("depth shift y", -2.0, 1.0);
+  expect_near("depth offset", -0.006, 0.002);
+  EXPECT_NEAR(result.calibration.rig.depth_offset, -0.006, 0.002);
+  EXPECT_EQ(result.calibration.depth_camera.fx, color.fx);
 }
 
 TEST(DepthPatch, IsThePlaneOfInverseDepthAndNotAnEdge) {

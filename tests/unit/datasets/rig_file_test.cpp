@@ -96,6 +96,15 @@ TEST(RigFile, TypeAndRangeErrorsNameTheLine) {
   expect_rejected("camera = 3\n", {"rig.toml:1", "must be a table"});
 }
 
+TEST(RigFile, ReadsTheOffsetOfTheDepth) {
+  const TemporaryFolder folder;
+  const Rig before{.depth_offset = 0.01};
+  EXPECT_EQ(apply_rig_file(folder.write("rig.toml", "[depth]\noffset = -0.006\n"), before).rig.depth_offset,
+            -0.006);
+  EXPECT_EQ(apply_rig_file(folder.write("rig.toml", "[depth]\nscale = 2\n"), before).rig.depth_offset, 0.01);
+  expect_rejected("[depth]\noffset = -0.3\n", {"rig.toml:2", "\"offset\"", "1/m"});
+}
+
 TEST(RigFile, ReadsTheAxesOfTheInertialSensors) {
   const TemporaryFolder folder;
   Rig before;

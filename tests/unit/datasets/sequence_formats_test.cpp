@@ -146,6 +146,20 @@ TEST(TumFormat, TheAxesOfARigFileCorrectTheSamplesOnce) {
   EXPECT_TRUE(first(exact).accel_b.isApprox(Eigen::Vector3d(3.5, 5.0, 5.0)));
 }
 
+TEST(TumFormat, TheOffsetOfTheRigFileCorrectsDepthImages) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder, 8, 6);
+  const std::string rig = "[camera]\nwidth = 8\nheight = 6\nfx = 10\nfy = 10\ncx = 3.5\ncy = 2.5\n[depth]\n";
+  const auto depth = [&](const std::string& offset) {
+    folder.write("rig.toml", rig + offset);
+    const Frame frame = open_sequence(folder.path())->load_frame(0);
+    return depth_at(frame.depth, frame.depth_units_per_m, 3, 2);
+  };
+  const double measured = depth("");
+  EXPECT_NEAR(depth("offset = 0.1\n"), 1.0 / (1.0 / measured - 0.1), 1e-3);
+  EXPECT_NEAR(depth("offset = -0.1\n"), 1.0 / (1.0 / measured + 0.1), 1e-3);
+}
+
 /// Depth images of 4x3 beside color images of 8x6 with twice the focal length.
 TEST(TumFormat, RegistersDepthOfAnotherCameraIfTheRigFileHasThatCamera) {
   const TemporaryFolder folder;
