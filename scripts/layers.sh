@@ -104,7 +104,7 @@ row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
 row bench/diagnose/evidence $messages datasets
-row bench/diagnose $common bench/diagnose/evidence datasets eval/metrics eval/trajectory bench/config bench/model bench/run
+row bench/diagnose $common bench/diagnose/evidence datasets datasets/io eval/metrics eval/trajectory bench/config bench/model bench/run
 row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/config bench/run \
   bench/profile
 row bench/systems $messages datasets datasets/cache datasets/calibration datasets/faults datasets/synthetic/sequence eval eval/compare eval/io eval/metrics eval/trajectory bench/model bench/config bench/process \

@@ -332,6 +332,22 @@ Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions&
   return Diagnoser(stream, options).finish();
 }
 
+Diagnosis refused_recording(const std::string& sequence, const datasets::SensorRangeError& error) {
+  const datasets::SensorRange& range = error.range();
+  const bool gyro = range.quantity == datasets::kGyroscopeRange.quantity;
+  Diagnosis diagnosis{.sequence = sequence, .refused = true};
+  diagnosis.others.push_back(
+      {.id = gyro ? "gyro_unit" : "accel_unit",
+       .name = fmt::format("{} in {}, or defective values", gyro ? "gyroscope" : "accelerometer",
+                           range.likely_unit),
+       .evidence = error.what(),
+       .remedy = fmt::format("convert the values of the file to {} (times {}), or remove the rows",
+                             range.unit, gyro ? "0.01745329" : "0.00980665"),
+       .strength = kFundamental,
+       .basis = CauseBasis::kShown});
+  return diagnosis;
+}
+
 TruthReport check_truth(const datasets::SensorStream& stream, const DiagnosisOptions& options) {
   const TrialRequest request = request_of(stream, options);
   const Trajectory visual =

@@ -15,6 +15,7 @@
 #include "bench/diagnose/cause.h"
 #include "bench/diagnose/trials.h"
 #include "bench/diagnose/truth_report.h"
+#include "datasets/io/imu_file.h"
 
 namespace stillpoint::bench {
 
@@ -45,6 +46,7 @@ struct Diagnosis {
   int trials = 0;
   bool finished_run = false;  ///< `error` is that of the finished run
   bool foreign = false;       ///< which is of another system
+  bool refused = false;       ///< it cannot be read, see `refused_recording`
   bool interrupted = false;
   std::vector<std::string> left_out;  ///< for lack of budget, one phrase each
   std::vector<Cause> causes;          ///< with an effect, worst first
@@ -64,6 +66,10 @@ void rank_others(std::vector<Cause>& causes, double effective);
 /// @throws InputError as `run_odometry`, for a budget that ends before 30 frames are processed, and for a
 /// finished run of fewer frames or without ground truth
 [[nodiscard]] Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options);
+
+/// Of a recording that cannot be read for its inertial values: no frames, and their unit among `others`.
+[[nodiscard]] Diagnosis refused_recording(const std::string& sequence,
+                                          const datasets::SensorRangeError& error);
 
 /// Only the comparison of the ground truth with the other sensors, by one run without IMU, or by the finished
 /// run.

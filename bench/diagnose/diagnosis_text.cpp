@@ -78,6 +78,11 @@ bool has_unmeasured(const Diagnosis& diagnosis) {
 }
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {
+  if (diagnosis.refused) {
+    const Cause& cause = diagnosis.others.front();
+    return fmt::format("{}: cannot be read\n1. {}\n   evidence: {}\n   remedy: {}\n", diagnosis.sequence,
+                       cause.name, cause.evidence, cause.remedy);
+  }
   std::string text = title(diagnosis);
   std::size_t number = 0;
   for (const Cause& cause : diagnosis.causes) {

@@ -82,10 +82,12 @@ class Stream {
 
 Eigen::Vector3d in_range(const Eigen::Vector3d& value, const SensorRange& range, std::string_view place) {
   if (value.cwiseAbs().maxCoeff() <= range.limit) return value;
-  throw InputError(std::string(place),
-                   "the " + std::string(range.quantity) + " exceeds " +
-                       std::to_string(std::lround(range.limit)) + " " + std::string(range.unit) +
-                       ", the range of such sensors; is it in " + std::string(range.likely_unit) + "?");
+  throw SensorRangeError(
+      InputError(std::string(place), "the " + std::string(range.quantity) + " exceeds " +
+                                         std::to_string(std::lround(range.limit)) + " " +
+                                         std::string(range.unit) + ", the range of such sensors; is it in " +
+                                         std::string(range.likely_unit) + "?"),
+      range);
 }
 
 /// Collects the messages of the selected topics.

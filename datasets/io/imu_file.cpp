@@ -22,10 +22,11 @@ Eigen::Vector3d vector_at(const eval::TextRow& row, const VectorColumns& columns
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     vector[axis] = row.finite_number(columns[static_cast<std::size_t>(axis)]);
     if (std::abs(vector[axis]) <= range.limit) continue;
-    throw row.error(
-        fmt::format("the {} {:g} exceeds {} {}, the range of such sensors; is it in {}? convert the file or "
-                    "remove the row",
-                    range.quantity, vector[axis], range.limit, range.unit, range.likely_unit));
+    throw SensorRangeError(
+        row.error(fmt::format("the {} {:g} exceeds {} {}, the range of such sensors; is it in {}? convert "
+                              "the file or remove the row",
+                              range.quantity, vector[axis], range.limit, range.unit, range.likely_unit)),
+        range);
   }
   return vector;
 }

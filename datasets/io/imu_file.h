@@ -27,12 +27,22 @@ inline constexpr SensorRange kGyroscopeRange{100.0, "angular velocity", "rad/s",
 /// 100 g; the full scale of inertial measurement units for navigation is at most 40 g.
 inline constexpr SensorRange kAccelerometerRange{1000.0, "acceleration", "m/s^2", "mg"};
 
+/// A value beyond the range of its sensor.
+class SensorRangeError : public InputError {
+ public:
+  SensorRangeError(const InputError& error, const SensorRange& range) : InputError(error), range_(range) {}
+  [[nodiscard]] const SensorRange& range() const { return range_; }
+
+ private:
+  SensorRange range_;
+};
+
 /// Reads rows `t wx wy wz ax ay az` [rad/s, m/s^2] (column order of EuRoC), or the columns that a header
 /// names (eval/io/column_header.h), in the unit of time that it states.
 /// @param unit of the stamps, unless the header states one
 /// @return strictly increasing in time, not empty
-/// @throws InputError if the file is missing, empty, unsorted, a row is not seven finite numbers within the
-/// ranges of the sensors, or the header states another unit or names other columns
+/// @throws InputError if the file is missing, empty, unsorted, a row is not seven finite numbers, or the
+/// header states another unit or names other columns; SensorRangeError
 [[nodiscard]] std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, eval::TimeUnit unit,
                                                    FaultLog& faults);
 

@@ -78,6 +78,20 @@ TEST(DiagnoseCommand, NamesAGyroscopeInDegreesFirst) {
   EXPECT_LE(std::ranges::count(result.out, '\n'), 15) << result.out;
 }
 
+/// Rates beyond the range of gyroscopes, which no other command reads.
+TEST(DiagnoseCommand, NamesTheUnitOfARecordingThatCannotBeRead) {
+  const TemporaryFolder folder;
+  const fs::path copy = copy_of_rendered_sequence(folder);
+  scale_columns(copy / "d400_gyroscope.txt", 1e5);
+  const ProgramResult result = diagnosis_of(copy, {});
+  ASSERT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_NE(result.out.find("1. gyroscope in deg/s"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("d400_gyroscope.txt:"), std::string::npos) << result.out;
+  const ProgramResult json = diagnosis_of(copy, {"--json"});
+  ASSERT_EQ(json.exit_code, 1) << json.err;
+  EXPECT_EQ(nlohmann::json::parse(json.out).at("others").at(0).at("id"), "gyro_unit");
+}
+
 /// A window that does not fit once claimed that the focal length is 80 % off.
 TEST(DiagnoseCommand, TheLineOfARunWithoutPosesSaysNothingAboutTheRig) {
   const TemporaryFolder folder;

@@ -178,7 +178,14 @@ int diagnose_sequence(const DiagnoseArguments& arguments) {
   if (arguments.sequence.empty())
     throw InputError("SEQ", "is missing; only --truth works on all registered sequences");
   const auto start = std::chrono::steady_clock::now();
-  const auto stream = open_recording(arguments, arguments.sequence);
+  std::unique_ptr<datasets::SensorStream> stream;
+  try {
+    stream = open_recording(arguments, arguments.sequence);
+  } catch (const datasets::SensorRangeError& error) {
+    const Diagnosis refused = refused_recording(arguments.sequence, error);
+    std::cout << (arguments.json ? diagnosis_json(refused) : diagnosis_text(refused));
+    return kExitFindings;
+  }
   if (!stream) return kExitInterrupted;
   const Diagnosis diagnosis = diagnose(*stream, options_of(arguments, stream->info(), start));
   std::cout << (arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxDelay = 3;             // [frames]
 constexpr int kMaxShift_px = 12;         // of each direction
-constexpr std::size_t kMostImages = 30;  // spread over the recording
+constexpr std::size_t kMostImages = 60;  // spread over the recording
 constexpr int kLeastImages = 10;
 constexpr std::size_t kLeastEdges = 100;  // pixels of a depth image
 constexpr std::size_t kMostEdges = 3000;  // of which every nth is used
