@@ -88,9 +88,10 @@ struct BiasCheckLimits {
   BiasLimit accel_agreement{.base = 0.15, .sigmas = 1.4};   ///< [m/s^2]
   BiasLimit gyro_difference{.base = 0.006, .sigmas = 8.0};  ///< [rad/s]
   BiasLimit accel_difference{.base = 0.05, .sigmas = 5.6};  ///< [m/s^2]
-  std::array<BiasStepRule, 3> gyro_rules{
+  std::array<BiasStepRule, 4> gyro_rules{
       {{.limit = {.base = 0.05, .sigmas = 16.0}, .errors = 1, .certain = true, .explained = true},
        {.limit = {.base = 0.006, .sigmas = 8.0}, .errors = 2, .certain = true, .explained = false},
+       {.limit = {.base = 0.006, .sigmas = 4.0}, .errors = 4, .certain = false, .explained = false},
        {.limit = {.base = 0.0015, .sigmas = 2.0}, .errors = 6, .certain = true, .explained = false}}};
   std::array<BiasStepRule, 3> accel_rules{
       {{.limit = {.base = 0.2, .sigmas = 5.6}, .errors = 1, .certain = true, .explained = true},

@@ -233,6 +233,14 @@ TEST(EstimatorFaults, StepsOfTheBiasesAreFollowed) {
   }
 }
 
+/// The last state of the default.
+NavState last_of_default(const FaultyScenario& scenario) {
+  Estimator estimator(BackendConfig{}, ImuConfig{}, rig_of(scenario), 1);
+  const FaultyRun run = run_with_faults(scenario, estimator,
+                                        [&](const TrackedFrame& frame) { return estimator.process(frame); });
+  return run.frames.back().update.state;
+}
+
 /// Too small to be recognized as a step, as when an accelerometer becomes warm. With the stated random walk
 /// the bias error grows in all of ten runs.
 TEST(EstimatorFaults, SmallChangesOfTheAccelerometerBiasAreFollowedByTheDefault) {
@@ -246,13 +254,30 @@ TEST(EstimatorFaults, SmallChangesOfTheAccelerometerBiasAreFollowedByTheDefault)
         if (to_seconds(sample.t) >= kBegin_s) sample.accel_b += change;
       }
     };
-    Estimator estimator(BackendConfig{}, ImuConfig{}, rig_of(scenario), 1);
-    const FaultyRun run = run_with_faults(
-        scenario, estimator, [&](const TrackedFrame& frame) { return estimator.process(frame); });
-    const Eigen::Vector3d bias = run.frames.back().update.state.accel_bias;
+    const Eigen::Vector3d bias = last_of_default(scenario).accel_bias;
     followed += (bias - scenario.motion.accel_bias - change).norm() < change.norm();
   }
   EXPECT_GE(followed, 8);
+}
+
+/// Thirty features: vision is not certain, as where people hide most of the scene.
+TEST(EstimatorFaults, StepsOfTheGyroscopeAreFollowedByFewFeatures) {
+  const Eigen::Vector3d change = Eigen::Vector3d::Constant(0.02);
+  int followed = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    FaultyScenario scenario;
+    scenario.motion.seed = seed;
+    scenario.change_frame = [](TrackedFrame& frame) {
+      if (frame.features.size() > 30) frame.features.resize(30);
+    };
+    scenario.change_imu = [&](std::vector<ImuSample>& samples) {
+      for (ImuSample& sample : samples) {
+        if (to_seconds(sample.t) >= kBegin_s) sample.gyro_b += change;
+      }
+    };
+    followed += (last_of_default(scenario).gyro_bias - scenario.motion.gyro_bias - change).norm() < 0.005;
+  }
+  EXPECT_GE(followed, 9);
 }
 
 /// Two pixels of noise are more than the check of the biases expects: an error of vision, not of the sensor.
