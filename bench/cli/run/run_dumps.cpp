@@ -87,7 +87,8 @@ bool RunDumps::attempt(const char* name, const Action& action) {
     action();
     return true;
   } catch (const std::runtime_error& error) {  // InputError and errors of the file system
-    failures_.push_back(std::string(name) + ": " + error.what());
+    const std::string text = error.what();
+    failures_.push_back(text.starts_with(name) ? text : std::string(name) + ": " + text);
     return false;
   }
 }
@@ -154,10 +155,12 @@ std::vector<std::string> RunDumps::finish(const OdometryRun* run) {
     attempt("--images", [&] { write_files(request_.folder, {{kLandmarksFile, landmarks_.text()}}); });
   if (const std::string surfaces = surfaces_ ? surfaces_->ply() : ""; !surfaces.empty())
     attempt("--images", [&] { write_files(request_.folder, {{kSurfacesFile, surfaces}}); });
-  if (request_.cost && run != nullptr)
-    attempt("--dump cost", [&] { write_files(request_.folder, {{kCostFile, cost_svg(*run)}}); });
-  if (request_.cost && loops != nullptr)
-    attempt("--dump cost", [&] { write_files(request_.folder, {{kLoopCostFile, loop_cost_svg(*loops)}}); });
+  if (request_.cost && run != nullptr) {
+    attempt("--dump cost", [&] {
+      write_files(request_.folder, {{kCostFile, cost_svg(*run)}});
+      if (loops != nullptr) write_files(request_.folder, {{kLoopCostFile, loop_cost_svg(*loops)}});
+    });
+  }
   return failures_;
 }
 
