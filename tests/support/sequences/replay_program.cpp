@@ -8,10 +8,10 @@
 //   --crash-after N    terminates by a signal after N poses
 //   --hang             never terminates
 //   --fill MB          allocates this amount of memory and never terminates
+//   --pause MS         waits before it writes: a process that ends at once is not measured
 //   --log FILE         appends a line on success
 //   --unperturbed      rejects the config key pipeline.perturbation_seed, as an old version. Without it, the
-//   error of
-//                      a perturbed run differs by about 1 %
+//                      error of a perturbed run differs by about 1 %
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -49,6 +49,7 @@ struct Options {
   long crash_after = -1;
   bool hang = false;
   std::size_t fill_mb = 0;
+  unsigned pause_ms = 0;
   std::string log;
 };
 
@@ -85,6 +86,7 @@ Options parse(const std::vector<std::string>& words) {
     if (word == "--crash-after") options.crash_after = std::stol(next());
     if (word == "--hang") options.hang = true;
     if (word == "--fill") options.fill_mb = std::stoul(next());
+    if (word == "--pause") options.pause_ms = static_cast<unsigned>(std::stoul(next()));
     if (word == "--log") options.log = next();
   }
   return options;
@@ -139,6 +141,7 @@ int run(const Options& options) {
   const Trajectory truth =
       eval::read_tum(fs::path(options.sequence) / "groundtruth.txt", "camera").trajectory;
   const Trajectory path = replay(truth, options);
+  usleep(1000 * options.pause_ms);
   eval::write_tum(path, options.out / "trajectory.tum");
   write_result(eval::score(truth, path), options);
   if (!options.log.empty())
