@@ -186,7 +186,7 @@ Eigen::Matrix3d axes_of(const Section& section, std::string_view key, const Eige
   if (node == nullptr) return fallback;
   const std::vector<double> values = section.numbers(*node, key);
   if (values.size() != 9) section.fail(*node, key, "must have 9 numbers (3x3, row-major)");
-  const Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+  Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
   if (!are_plausible_axes(axes))
     section.fail(
         *node, key,

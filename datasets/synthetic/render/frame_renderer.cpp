@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "datasets/synthetic/render/mover_tiles.h"
 #include "datasets/synthetic/render/surface_tiles.h"
