@@ -90,9 +90,8 @@ struct CalibrationPriors {
   double distortion = 0.1;  ///< of each coefficient
   double rolling_shutter_s = 0.02;
   double depth_scale = 0.15;
-  double depth_offset =
-      0.005;  ///< [1/m]: 0.2 px of disparity at a product of focal length and baseline of 40 px m
-  double depth_focal = 0.05;  ///< relative
+  double depth_offset = 0.005;  ///< [1/m]: 0.2 px of disparity where focal length times baseline is 40 px m
+  double depth_focal = 0.05;    ///< relative
   double depth_center_px = 10.0;
   double rotation_rad = 0.035;  ///< 2 deg; of T_b_c and T_c_d
   double lever_m = 0.03;

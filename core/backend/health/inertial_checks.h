@@ -163,7 +163,7 @@ struct MeasuredBiases {
 ///       1       |e| > 0.05 + 16 s, explained           |e| > 0.2 + 5.6 s, explained, vision is certain
 ///       2       |e| > 0.006 + 8 s                      |e| > 0.2 + 4.2 s, one is explained
 ///       3                                              |e| > 0.05 + 2.1 s
-///       4       |e| > 0.006 + 4 s, vision is any
+///       4       |e| > 0.006 + 4 s, vision certain or not
 ///       6       |e| > 0.0015 + 2 s
 ///
 /// An explained error is one by which the data changed, see InertialError. An image that jumps gives two

@@ -372,8 +372,10 @@ void SurfaceTiles::find(const Tile& tile, const TileRays& rays, TileHits& hits) 
       static_cast<std::size_t>(tile.row / Tile::kRows * columns_ + tile.column / Tile::kColumns);
   const std::size_t begin = first_[number], end = first_[number + 1];
   if (begin == end) return;
-  if (hits.content == TileHits::Content::kNothing && end == begin + 1 && sorted_[begin].covers)
-    return show_one(seen_[sorted_[begin].seen], rays, hits);
+  const SeenSurface& only = seen_[sorted_[begin].seen];
+  const bool is_moving = (only.surface & TileHits::kMoving) != 0;  // its light is not baked
+  if (hits.content == TileHits::Content::kNothing && end == begin + 1 && sorted_[begin].covers && !is_moving)
+    return show_one(only, rays, hits);
   hits.content = TileHits::Content::kAny;
   Search search{.rays = rays, .hits = hits, .seen = {}};
   search.seen.fill(-1);

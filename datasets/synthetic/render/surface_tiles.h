@@ -30,7 +30,7 @@ struct TileRays {
 
 /// What the light samples in the pixels of a tile show, in row-major order.
 struct TileHits {
-  enum class Content { kNothing, kOneSurface, kAny };  ///< kOneSurface: the same in all pixels
+  enum class Content { kNothing, kOneSurface, kAny };  ///< kOneSurface: the same static one in all pixels
   Content content = Content::kNothing;
   alignas(64) std::array<float, Tile::kPixels> inverse_z;  ///< of the depth along the optical axis [1/m]
   alignas(64) std::array<float, Tile::kPixels> u, v;       ///< coordinates in the surface
