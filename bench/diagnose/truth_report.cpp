@@ -2,6 +2,7 @@
 #include "bench/diagnose/truth_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -24,6 +25,11 @@ constexpr double kMostScaleSigma = 0.25;  ///< relative; above only a factor of 
 constexpr double kMostTurnSigma_rad = 0.17;
 constexpr double kMostPositionSigma_m = 0.1;
 constexpr double kLeastMotions = 30.0;
+constexpr double kForward = 0.9;  ///< part of a motion along the optical axis that tells its bearing
+constexpr double kLeastForward_m = 0.05;
+constexpr double kBearingBlock_s = 1.0;
+constexpr std::size_t kLeastBearingBlocks = 5;
+constexpr double kLeastBearing_rad = 0.0175;  ///< 1 degree
 constexpr double kLeastNoise_m = 0.002;
 constexpr double kLeastJump_m = 0.03;
 constexpr double kJumpRatio = 8.0;  ///< to the median difference of neighboring steps
@@ -124,17 +130,27 @@ struct HandEye {
   MotionFit camera;  ///< R_f_c p_B = p_A / s + (R_A - I) p / s; x = (p / s, 1 / s)
 };
 
-HandEye hand_eye(const Trajectory& truth, const Trajectory& visual, const TruthReport& report) {
-  const Eigen::Quaterniond q_f_c = report.rotation->q_a_b;
-  const double lag_s = report.by_images ? report.by_images->lag_s : 0.0;
-  HandEye result;
+/// Relative motions of the truth's frame and the camera from the same time on.
+struct MotionPair {
+  Timestamp t;
+  Pose A, B;
+};
+
+std::vector<MotionPair> motion_pairs(const Trajectory& truth, const Trajectory& visual, double lag_s) {
+  std::vector<MotionPair> pairs;
   auto end = visual.poses.begin();
   for (const StampedPose& begin : visual.poses) {
     while (end != visual.poses.end() && seconds_between(begin.t, end->t) < kMotion_s) ++end;
     if (end == visual.poses.end()) break;
     const auto from = pose_at(truth, after(begin.t, lag_s)), to = pose_at(truth, after(end->t, lag_s));
-    if (!from || !to) continue;
-    const Pose A = from->inverse() * *to, B = begin.T_w_f.inverse() * end->T_w_f;
+    if (from && to) pairs.push_back({begin.t, from->inverse() * *to, begin.T_w_f.inverse() * end->T_w_f});
+  }
+  return pairs;
+}
+
+HandEye hand_eye(const std::vector<MotionPair>& pairs, const Eigen::Quaterniond& q_f_c) {
+  HandEye result;
+  for (const auto& [t, A, B] : pairs) {
     const Eigen::Vector3d camera = q_f_c * B.p;
     const Eigen::Matrix3d turn = A.R() - Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, 3, 4> J;
@@ -147,8 +163,8 @@ HandEye hand_eye(const Trajectory& truth, const Trajectory& visual, const TruthR
 }
 
 /// Adds position and scale of the hand-eye calibration, if the motion determines them.
-void add_hand_eye(const Trajectory& truth, const Trajectory& visual, TruthReport& report) {
-  const HandEye motions = hand_eye(truth, visual, report);
+void add_hand_eye(const std::vector<MotionPair>& pairs, TruthReport& report) {
+  const HandEye motions = hand_eye(pairs, report.rotation->q_a_b);
   const auto by_truth = motions.truth.solve(), by_camera = motions.camera.solve();
   if (!by_truth || !by_camera || by_truth->x[3] <= 0.0 || by_camera->x[3] <= 0.0) return;
   const double least = by_truth->x[3], most = 1.0 / by_camera->x[3];
@@ -162,6 +178,37 @@ void add_hand_eye(const Trajectory& truth, const Trajectory& visual, TruthReport
   const ScaleFit scale{.scale = std::sqrt(least * most),
                        .relative_sigma = std::hypot(0.5 * std::log(most / least), relative)};
   if (scale.relative_sigma <= kMostScaleSigma) report.scale = scale;
+}
+
+std::optional<BearingFit> bearing_of(const std::vector<MotionPair>& pairs, const Pose& T_c_f) {
+  std::vector<Eigen::Vector2d> medians;
+  std::array<std::vector<double>, 2> slopes;
+  const auto finish_block = [&] {
+    if (2.0 * static_cast<double>(slopes[0].size()) > kLeastMotions)
+      medians.emplace_back(middle_of(slopes[0]), middle_of(slopes[1]));
+    for (std::vector<double>& values : slopes) values.clear();
+  };
+  Timestamp start = pairs.empty() ? Timestamp{} : pairs.front().t;
+  for (const auto& [t, A, B] : pairs) {
+    if (seconds_between(start, t) >= kBearingBlock_s) {
+      finish_block();
+      start = t;
+    }
+    const Eigen::Vector3d a = (T_c_f * A * T_c_f.inverse()).p, b = B.p;
+    const bool forward = std::abs(a.z()) > std::max(kLeastForward_m, kForward * a.norm()) &&
+                         std::abs(b.z()) > kForward * b.norm();
+    for (int axis = 0; forward && axis < 2; ++axis)
+      slopes[static_cast<std::size_t>(axis)].push_back(a[axis] / a.z() - b[axis] / b.z());
+  }
+  finish_block();
+  if (medians.size() < kLeastBearingBlocks) return std::nullopt;
+  const auto count = static_cast<double>(medians.size());
+  BearingFit fit{.sigma = Eigen::Vector2d::Zero()};
+  for (const Eigen::Vector2d& median : medians) fit.slope += median / count;
+  for (const Eigen::Vector2d& median : medians)
+    fit.sigma += (median - fit.slope).cwiseAbs2() / (count * (count - 1.0));
+  fit.sigma = fit.sigma.cwiseSqrt();
+  return fit;
 }
 
 Cause truth_cause(const std::string& id, const std::string& name, const std::string& evidence,
@@ -272,6 +319,30 @@ std::vector<Cause> quality_causes(const TruthReport& report) {
   return causes;
 }
 
+/// Less strong than a lens of the run, which tells focal length and distortion, too.
+std::vector<Cause> center_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
+  if (!report.bearing || !frame_causes(report, info).empty()) return {};
+  const auto& [slope, sigma] = *report.bearing;
+  const double sigmas = slope.norm() / std::max(sigma.norm(), kLeastBearing_rad / kClear);
+  if (sigmas < kClear) return {};
+  const Camera& camera = info.rig.camera;
+  const Eigen::Vector2d center_px(camera.cx - camera.fx * slope.x(), camera.cy - camera.fy * slope.y());
+  Cause cause = truth_cause(
+      "center", "principal point, or a turned ground truth",
+      fmt::format(
+          "by images the camera moves {:.1f} deg beside the motion of the ground truth ({:.0f} sigma)",
+          std::atan(slope.norm()) * 180.0 / M_PI, slope.norm() / sigma.norm()),
+      fmt::format("[camera] cx = {:.2f}, cy = {:.2f} in rig.toml; if these are calibrated, calibrate the "
+                  "rotation of the ground truth",
+                  center_px.x(), center_px.y()));
+  cause.strength = 0.5 * kClear;
+  cause.correction = Correction{.change = [center_px](auto& changed) {
+    changed.rig.camera.cx = center_px.x();
+    changed.rig.camera.cy = center_px.y();
+  }};
+  return {cause};
+}
+
 std::vector<Cause> scale_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
   if (!report.scale) return {};
   const auto [scale, relative_sigma] = *report.scale;
@@ -307,17 +378,20 @@ TruthReport truth_report(const datasets::SequenceInfo& info, const RecordingSurv
   if (!info.imu.empty())
     report.by_gyro =
         fit_lag(rates, rates_between(RateIntegral(info.imu), info.frame_times), kTruthLagRange_s);
+  const double lag_s = report.by_images ? report.by_images->lag_s : 0.0;
+  const std::vector<MotionPair> pairs = motion_pairs(truth, visual, lag_s);
+  report.bearing = bearing_of(pairs, info.ground_truth.T_c_f);
   if (!report.by_images) return report;
-  report.rotation = fit_rotation(rate_pairs(rates, by_images, report.by_images->lag_s));
-  add_hand_eye(truth, visual, report);
+  report.rotation = fit_rotation(rate_pairs(rates, by_images, lag_s));
+  add_hand_eye(pairs, report);
   return report;
 }
 
 std::vector<Cause> truth_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
   std::vector<Cause> causes;
   if (report.poses == 0) return causes;
-  for (const auto& more : {lag_causes(report, info), frame_causes(report, info), quality_causes(report),
-                           scale_causes(report, info)})
+  for (const auto& more : {lag_causes(report, info), frame_causes(report, info), center_causes(report, info),
+                           quality_causes(report), scale_causes(report, info)})
     causes.insert(causes.end(), more.begin(), more.end());
   return causes;
 }

@@ -10,6 +10,10 @@
 /// Errors of p_B reduce s by the first, errors of p_A increase it by the second: s is between both (Frisch
 /// 1934, Statistical Confluence Analysis). The result is their mean (of s the geometric one), and half of
 /// their difference is part of its deviation.
+///
+/// A camera whose stated center is off by d moves by images with depth to a side: with focal length f,
+///   x_A / z_A - x_B / z_B = d_x / f, and likewise of y,
+/// for motions forward or backward, in the coordinates of the camera. So does one whose truth is turned.
 #pragma once
 
 #include <optional>
@@ -26,6 +30,12 @@ struct ScaleFit {
   double relative_sigma = 1.0;  ///< of its logarithm
 };
 
+/// Lateral motion by the truth minus that by images, per forward motion: about x and y of the camera.
+struct BearingFit {
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+  Eigen::Vector2d sigma = Eigen::Vector2d::Ones();  ///< by the differences between seconds
+};
+
 struct TruthReport {
   std::size_t poses = 0;
   double coverage = 0.0;                    ///< fraction of the frames between poses at most 0.1 s apart
@@ -34,9 +44,10 @@ struct TruthReport {
   std::optional<RotationFit> rotation;      ///< R_f_c
   std::optional<Eigen::Vector3d> position;  ///< of the camera in f [m]
   Eigen::Vector3d position_sigma = Eigen::Vector3d::Zero();
-  std::optional<ScaleFit> scale;  ///< nullopt if its deviation exceeds 25 %
-  double noise_m = 0.0;           ///< white noise per axis, by fourth differences
-  std::vector<Timestamp> jumps;   ///< steps that the neighboring ones do not have
+  std::optional<BearingFit> bearing;  ///< nullopt with fewer than five seconds forward or backward
+  std::optional<ScaleFit> scale;      ///< nullopt if its deviation exceeds 25 %
+  double noise_m = 0.0;               ///< white noise per axis, by fourth differences
+  std::vector<Timestamp> jumps;       ///< steps that the neighboring ones do not have
 };
 
 /// @param visual trajectory of the camera by a run without IMU; may be empty
