@@ -49,6 +49,8 @@ TrialRequest request_of(const datasets::SensorStream& stream, const DiagnosisOpt
           .stop_requested = options.stop_requested};
 }
 
+bool is_center(const Cause& cause) { return cause.id == "center"; }
+
 class Diagnoser {
  public:
   Diagnoser(const datasets::SensorStream& stream, const DiagnosisOptions& options)
@@ -184,8 +186,10 @@ class Diagnoser {
       return all;
     }
     const TruthReport truth = truth_report(part->info(), survey, visual);
-    for (const auto& more : {inertial_causes(part->info(), survey), image_causes(part->info(), survey),
-                             truth_causes(truth, part->info()), start_causes(part->info(), survey)})
+    std::vector<Cause> inertial = inertial_causes(part->info(), survey);
+    if (observes_center(baseline.run.calibration)) std::erase_if(inertial, is_center);
+    for (const auto& more : {inertial, image_causes(part->info(), survey), truth_causes(truth, part->info()),
+                             start_causes(part->info(), survey)})
       all.insert(all.end(), more.begin(), more.end());
     if (alignment) {
       const std::vector<Cause> more = alignment_causes(*alignment);

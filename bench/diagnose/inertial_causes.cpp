@@ -221,6 +221,36 @@ std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info, const std
   return {cause};
 }
 
+/// The center whose error turns the view as the rotation of the camera by images does, if that is not about
+/// the optical axis. Weaker than a center that the run or the ground truth tells.
+std::vector<Cause> center_beside_rotation(const datasets::SequenceInfo& info,
+                                          const std::vector<RatePair>& pairs) {
+  constexpr double kMostOfWidth = 0.05;  // of the image, by which the center of a lens may be off
+  const RotationFit fit = fit_rotation(pairs);
+  const Eigen::Matrix3d R_c_b = info.rig.T_b_c.R().transpose();
+  const Eigen::Vector3d turn_c = R_c_b * log_so3(fit.q_a_b * info.rig.T_b_c.q.conjugate());
+  const double sigma_z_rad =
+      std::hypot(R_c_b.row(2).transpose().cwiseProduct(fit.sigma_rad).norm(), kAlignmentError_rad);
+  const Camera& camera = info.rig.camera;
+  const Eigen::Vector2d error_px(camera.fx * turn_c.y(), -camera.fy * turn_c.x());
+  if (std::abs(turn_c.z()) > kSignificant * sigma_z_rad || error_px.norm() > kMostOfWidth * camera.width)
+    return {};
+  const Eigen::Vector2d center_px = Eigen::Vector2d(camera.cx, camera.cy) - error_px;
+  return {{.id = "center",
+           .name = "principal point",
+           .evidence =
+               fmt::format("off by ({:+.1f}, {:+.1f}) px it turns the view as the camera rotation does, and "
+                           "this run does not observe it",
+                           error_px.x(), error_px.y()),
+           .remedy = fmt::format("[camera] cx = {:.2f}, cy = {:.2f} in rig.toml, if these are not calibrated",
+                                 center_px.x(), center_px.y()),
+           .strength = 1.0,
+           .correction = Correction{.change = [center_px](auto& changed) {
+             changed.rig.camera.cx = center_px.x();
+             changed.rig.camera.cy = center_px.y();
+           }}}};
+}
+
 /// By the rates of the ground truth, where those of the images are too noisy to tell, but agree.
 std::vector<Cause> rotation_by_truth(const datasets::SequenceInfo& info, const RateIntegral& gyro,
                                      const std::vector<RatePair>& by_images) {
@@ -391,6 +421,7 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
   if (axes.empty()) {
     const std::vector<Cause> turned = rotation_causes(info, pairs);
     add(turned.empty() ? rotation_by_truth(info, gyro, pairs) : turned);
+    if (!turned.empty()) add(center_beside_rotation(info, pairs));
   }
   if (lag) {
     add(clock_causes(info, *lag));

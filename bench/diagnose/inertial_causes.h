@@ -10,7 +10,8 @@
 namespace stillpoint::bench {
 
 /// Units, axes, rotation and clock of the IMU, gaps, rate, jitter and saturation of its samples. Wrong units
-/// come alone: the other checks require right ones.
+/// come alone: the other checks require right ones. Beside the rotation is the center that looks like it,
+/// which only a run that does not observe the center leaves open.
 [[nodiscard]] std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info,
                                                  const RecordingSurvey& survey);
 

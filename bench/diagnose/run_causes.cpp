@@ -251,6 +251,12 @@ std::vector<Cause> feature_causes(const OdometryRun& run, const datasets::Sequen
 
 }  // namespace
 
+bool observes_center(const EstimatedCalibration& calibration) {
+  return std::ranges::any_of(rig_report(calibration), [](const RigFinding& finding) {
+    return finding.parameter.starts_with("center") && finding.result != RigResult::kNotObserved;
+  });
+}
+
 std::vector<Cause> run_causes(const OdometryRun& run, const datasets::SequenceInfo& info) {
   std::vector<Cause> causes;
   for (const auto& more :

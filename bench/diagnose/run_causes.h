@@ -13,4 +13,7 @@ namespace stillpoint::bench {
 /// Causes by the differences of the rig report, the innovations, the boxes, and the features.
 [[nodiscard]] std::vector<Cause> run_causes(const OdometryRun& run, const datasets::SequenceInfo& info);
 
+/// Whether the run tells the center of the camera, right or not.
+[[nodiscard]] bool observes_center(const EstimatedCalibration& calibration);
+
 }  // namespace stillpoint::bench

@@ -73,6 +73,37 @@ TEST(InertialCauses, TellASmallRotationAndALateClock) {
   EXPECT_LT(rig.info.rig.T_b_c.q.angularDistance(Eigen::Quaterniond::Identity()), 0.003);
 }
 
+/// On market a rotation of the camera was named for a center off by 10 px.
+TEST(InertialCauses, NameTheCenterThatLooksLikeARotationOfTheCamera) {
+  TurningRig rig({});
+  Camera& camera = rig.info.rig.camera;
+  camera.width = 320;
+  camera.fx = camera.fy = 230.0;
+  camera.cx = 168.0;  // 160 is right: the view turns by -8 / 230 about y
+  for (FrameStatistics& frame : rig.survey.frames) {
+    const Eigen::Quaterniond view = exp_so3(Eigen::Vector3d(0.0, -8.0 / 230.0, 0.0));
+    frame.T_now_last->q = view * frame.T_now_last->q * view.conjugate();
+  }
+  const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+  ASSERT_TRUE(cause_named(causes, "extrinsics_rotation"));
+  const Cause* const found = cause_named(causes, "center");
+  ASSERT_TRUE(found);
+  found->correction->change(rig.info);
+  EXPECT_NEAR(camera.cx, 160.0, 0.5);
+}
+
+TEST(InertialCauses, NameNoCenterForARotationThatNoneLooksLike) {
+  for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.0, 0.05, 0.03), Eigen::Vector3d(0.1, 0.0, 0.0)}) {
+    TurningRig rig({});
+    rig.info.rig.camera.width = 320;
+    rig.info.rig.camera.fx = rig.info.rig.camera.fy = 230.0;
+    rig.info.rig.T_b_c.q = exp_so3(turn);
+    const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+    EXPECT_TRUE(cause_named(causes, "extrinsics_rotation"));
+    EXPECT_FALSE(cause_named(causes, "center"));  // about the optical axis; 23 px
+  }
+}
+
 TEST(InertialCauses, TellADriftingClock) {
   TurningRig rig({.seconds = 20.0});
   const Timestamp first = rig.info.frame_times.front();
