@@ -363,6 +363,19 @@ ParameterOutcome outcome_of(double difference, double sigma, bool observed) {
                                                          : ParameterOutcome::kAgrees;
 }
 
+InertialBiases biases_of(const std::vector<BatchKeyframe>& keyframes) {
+  Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero(), squares = sum;
+  const auto count = static_cast<double>(keyframes.size());
+  for (const BatchKeyframe& keyframe : keyframes)
+    sum += Eigen::Map<const Eigen::Matrix<double, 6, 1>>(keyframe.speed_bias.data() + 3) / count;
+  for (const BatchKeyframe& keyframe : keyframes)
+    squares +=
+        (Eigen::Map<const Eigen::Matrix<double, 6, 1>>(keyframe.speed_bias.data() + 3) - sum).cwiseAbs2() /
+        count;
+  const Eigen::Matrix<double, 6, 1> spread = squares.cwiseSqrt();
+  return {sum.head<3>(), spread.head<3>(), sum.tail<3>(), spread.tail<3>()};
+}
+
 /// Estimation of the whole recording, then of its halves.
 class Calibration {
  public:
@@ -464,6 +477,8 @@ class Calibration {
     result_.pixel_sigma_px = solution_.state.pixel_sigma_px;
     result_.inverse_depth_sigma = solution_.state.inverse_depth_sigma;
     result_.imu_noise = solution_.state.imu_noise;
+    if (result_.inertial_factors > 0) result_.biases = biases_of(solution_.state.keyframes);
+    result_.rest = resting_noise(input_.imu);
     result_.truth_poses = solution_.statistics.truth_poses;
     result_.truth_sigma_m = solution_.state.truth_sigma_m;
     result_.truth_sigma_rad = solution_.state.truth_sigma_rad;

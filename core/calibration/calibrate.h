@@ -46,6 +46,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,6 +54,7 @@
 #include <Eigen/Core>
 
 #include "core/calibration/calibration_recording.h"
+#include "core/calibration/resting_noise.h"
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
 
@@ -150,6 +152,14 @@ struct HeldOutResiduals {
   std::vector<ImageResidual> before, after;  ///< of all inliers
 };
 
+/// Biases of the inertial sensors over the keyframes, and the standard deviations of their changes.
+struct InertialBiases {
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< mean [rad/s]
+  Eigen::Vector3d gyro_spread = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< mean [m/s^2]
+  Eigen::Vector3d accel_spread = Eigen::Vector3d::Zero();
+};
+
 struct CalibrationResult {
   RigCalibration calibration;
   std::vector<ParameterEstimate> parameters;  ///< those that were to be estimated
@@ -157,6 +167,8 @@ struct CalibrationResult {
   double pixel_sigma_px = 0.0;
   double inverse_depth_sigma = 0.0;                   ///< [1/m]
   ImuNoiseFactors imu_noise;                          ///< by the residuals, at least 1
+  std::optional<InertialBiases> biases;               ///< with inertial data
+  std::optional<RestingNoise> rest;                   ///< of the inertial sensors, where they rest
   std::size_t truth_poses = 0;                        ///< keyframes at which the ground truth is known
   double truth_sigma_m = 0.0, truth_sigma_rad = 0.0;  ///< of the ground truth, by the residuals
   double deviation_factor = 1.0;  ///< by which the halves differ more than expected, at least 1

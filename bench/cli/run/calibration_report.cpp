@@ -64,6 +64,37 @@ std::vector<std::string> remarks(const CalibrationSubject& subject, const Calibr
   return lines;
 }
 
+std::string vector_text(const Eigen::Vector3d& values, int digits) {
+  return fmt::format("({:.{}f}, {:.{}f}, {:.{}f})", values.x(), digits, values.y(), digits, values.z(),
+                     digits);
+}
+
+/// Biases in motion; noise and bias where the sensors rest, if they do.
+std::vector<std::string> sensor_lines(const CalibrationResult& result) {
+  std::vector<std::string> lines;
+  if (result.biases) {
+    lines.push_back(fmt::format("mean biases: gyroscope {} rad/s, accelerometer {} m/s^2",
+                                vector_text(result.biases->gyro, 4), vector_text(result.biases->accel, 3)));
+  }
+  if (!result.rest) return lines;
+  const RestingNoise& rest = *result.rest;
+  const ImuNoise& stated = result.calibration.rig.imu_noise;
+  const auto density = [&](double value, double stated_value) {
+    return fmt::format("{:.2e} +- {:.0f} % (stated {:.2e})", value, 100.0 * rest.relative_sigma,
+                       stated_value);
+  };
+  lines.push_back(fmt::format(
+      "at rest ({:.0f} s): gyro_noise {}, accel_noise {}, gyroscope bias {} +- {:.4f} rad/s", rest.seconds,
+      density(rest.gyro_noise, stated.gyro_noise), density(rest.accel_noise, stated.accel_noise),
+      vector_text(rest.gyro_bias, 4), rest.gyro_bias_sigma));
+  return lines;
+}
+
+/// Factors below 1 are not estimated.
+std::string factor_text(double factor) {
+  return fmt::format("{}{:.1f}", factor > 1.0 ? "" : "at most ", factor);
+}
+
 std::string residual_text(const CalibrationResult& result) {
   std::string text = fmt::format(
       "{} keyframes, {} points, {} observations, {} depths, {} inertial intervals\n"
@@ -71,9 +102,10 @@ std::string residual_text(const CalibrationResult& result) {
       result.keyframes, result.landmarks, result.observations, result.depths, result.inertial_factors,
       result.pixel_sigma_px, result.inverse_depth_sigma);
   if (result.inertial_factors > 0)
-    text += fmt::format("; noise of the IMU {:.1f} (gyro) and {:.1f} (accel) times the stated one",
-                        result.imu_noise.gyro, result.imu_noise.accel);
+    text += fmt::format("; noise of the IMU {} (gyro) and {} (accel) times the stated one",
+                        factor_text(result.imu_noise.gyro), factor_text(result.imu_noise.accel));
   text += '\n';
+  for (const std::string& line : sensor_lines(result)) text += line + '\n';
   if (result.truth_poses > 0)
     text += fmt::format(
         "ground truth at {} keyframes; deviation of its positions {:.1f} mm, of its rotations "
@@ -115,7 +147,7 @@ std::string calibration_json(const CalibrationSubject& subject, const Calibratio
                           {"outcome", outcome_name(p.outcome)}});
   }
   const HeldOutResiduals& h = result.held_out;
-  Json json = {{"schema", 2},
+  Json json = {{"schema", 3},
                {"sequence", subject.sequence},
                {"keyframes", result.keyframes},
                {"landmarks", result.landmarks},
@@ -129,6 +161,18 @@ std::string calibration_json(const CalibrationSubject& subject, const Calibratio
                {"parameters", parameters},
                {"interrupted", result.interrupted},
                {"remarks", remarks(subject, result)}};
+  if (result.biases)
+    json["biases"] = {{"gyro", std::span(result.biases->gyro.data(), 3)},
+                      {"gyro_spread", std::span(result.biases->gyro_spread.data(), 3)},
+                      {"accel", std::span(result.biases->accel.data(), 3)},
+                      {"accel_spread", std::span(result.biases->accel_spread.data(), 3)}};
+  if (result.rest)
+    json["rest"] = {{"seconds", result.rest->seconds},
+                    {"gyro_noise", result.rest->gyro_noise},
+                    {"accel_noise", result.rest->accel_noise},
+                    {"relative_sigma", result.rest->relative_sigma},
+                    {"gyro_bias", std::span(result.rest->gyro_bias.data(), 3)},
+                    {"gyro_bias_sigma", result.rest->gyro_bias_sigma}};
   if (result.truth_poses > 0)
     json["truth"] = {{"keyframes", result.truth_poses},
                      {"sigma_m", result.truth_sigma_m},
@@ -236,6 +280,7 @@ std::string calibrated_rig_text(const CalibrationSubject& subject, const Calibra
   if (!rig.has_imu) return lines.text();
   lines.add_line("\n[imu]");
   lines.add_pose("T_b_c", rig.T_b_c);
+  for (const std::string& line : sensor_lines(result)) lines.add_line("# " + line);
   lines.add("gyro_noise", rig.imu_noise.gyro_noise);
   lines.add("accel_noise", rig.imu_noise.accel_noise);
   lines.add("gyro_walk", rig.imu_noise.gyro_walk);
