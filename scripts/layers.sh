@@ -64,7 +64,8 @@ eval="eval eval/io eval/trajectory eval/metrics eval/statistics eval/compare eva
 
 # --- datasets: no odometry ---
 trajectories="eval/io eval/trajectory"
-row datasets/io $messages $trajectories
+row datasets/io/png
+row datasets/io $messages $trajectories datasets/io/png
 row datasets/calibration $messages eval/io datasets/io
 row datasets/foxglove $messages datasets/io
 row datasets/bags $messages $trajectories datasets/io datasets/calibration datasets/foxglove
@@ -159,7 +160,7 @@ row bench/minimal core/base bench/config bench/cli bench/plan bench/run bench/sy
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_module\.cpp$'
   '<blosc            ^datasets/cache/frame_file\.cpp$'
-  '<isa-l/           ^datasets/(io/image_io|bags/bag_chunks)\.cpp$'
+  '<isa-l/           ^datasets/(io/(image_io|png/huffman_deflate)|bags/bag_chunks)\.cpp$'
   '<(bzlib|lz4)       ^datasets/bags/bag_chunks\.cpp$'
   '<turbojpeg        ^datasets/io/image_io\.cpp$'
   '<embree[34]/        ^datasets/synthetic/render/embree\.h$'

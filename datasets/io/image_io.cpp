@@ -20,6 +20,7 @@
 #include "core/base/error.h"
 #include "datasets/io/file_descriptor.h"
 #include "datasets/io/image_module.h"
+#include "datasets/io/png/huffman_deflate.h"
 #include "datasets/io/shared_module.h"
 
 namespace stillpoint::datasets {
@@ -385,8 +386,9 @@ Bytes filtered_rows(const cv::Mat& image) {
 }
 
 /// Level 1 of ISA-L. Measured on renderings of 640x480: 2.8 ms and 607 kB for color, 1.6 ms and 233 kB for
-/// depth; libdeflate at its fastest level: 9.2 ms and 608 kB, 2.8 ms and 217 kB.
-Bytes compressed(Bytes rows) {
+/// depth; libdeflate at its fastest level: 9.2 ms and 608 kB, 2.8 ms and 217 kB. Color takes a third of that
+/// with `huffman_deflate`, and is 2 to 6 % smaller; depth would be 2 to 27 % larger.
+Bytes compressed(const Bytes& rows) {
   Bytes work(ISAL_DEF_LVL1_DEFAULT);
   isal_zstream stream;
   isal_deflate_init(&stream);
@@ -395,7 +397,7 @@ Bytes compressed(Bytes rows) {
   stream.level_buf_size = static_cast<std::uint32_t>(work.size());
   stream.gzip_flag = IGZIP_ZLIB;
   stream.end_of_stream = 1;
-  stream.next_in = rows.data();
+  stream.next_in = const_cast<std::uint8_t*>(rows.data());  // not changed
   stream.avail_in = static_cast<std::uint32_t>(rows.size());
   Bytes out;
   do {
@@ -417,7 +419,9 @@ Bytes encode_png(const cv::Mat& image) {
   header.insert(header.end(), {bits, color_type, 0, 0, 0});
   Bytes png(kSignature.begin(), kSignature.end());
   append_chunk(png, "IHDR", header);
-  append_chunk(png, "IDAT", compressed(filtered_rows(image)));
+  const Bytes rows = filtered_rows(image);
+  const std::optional<Bytes> noisy = image.type() == CV_8UC3 ? huffman_deflate(rows) : std::nullopt;
+  append_chunk(png, "IDAT", noisy ? *noisy : compressed(rows));
   append_chunk(png, "IEND", {});
   return png;
 }
