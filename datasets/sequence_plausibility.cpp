@@ -313,18 +313,24 @@ void ImagePlausibility::compare_depth(const Frame& frame) {
   reference_ = std::move(next);
 }
 
-std::optional<std::string> ImagePlausibility::depth_scale_finding() const {
+std::optional<DepthScaleByTruth> ImagePlausibility::depth_scale_by_truth() const {
   const int all = best_scale_[0] + best_scale_[1] + best_scale_[2];
   for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {
-    if (best_scale_[k] < kMinScalePairs || 3 * best_scale_[k] < 2 * all) continue;
-    return fmt::format(
-        "the images follow the motion of the ground truth with {:g} times the depth ({} of {} pairs of "
-        "frames); with "
-        "{:g} units per meter, [depth] scale = {:g} in a rig.toml would be right",
-        kDepthScales[k], best_scale_[k], all, info_.rig.depth_units_per_m,
-        info_.rig.depth_units_per_m / kDepthScales[k]);
+    if (best_scale_[k] >= kMinScalePairs && 3 * best_scale_[k] >= 2 * all)
+      return DepthScaleByTruth{kDepthScales[k], best_scale_[k], all};
   }
   return std::nullopt;
+}
+
+std::optional<std::string> ImagePlausibility::depth_scale_finding() const {
+  const std::optional<DepthScaleByTruth> found = depth_scale_by_truth();
+  if (!found) return std::nullopt;
+  return fmt::format(
+      "the images follow the motion of the ground truth with {:g} times the depth ({} of {} pairs of "
+      "frames); with "
+      "{:g} units per meter, [depth] scale = {:g} in a rig.toml would be right",
+      found->factor, found->pairs, found->all_pairs, info_.rig.depth_units_per_m,
+      info_.rig.depth_units_per_m / found->factor);
 }
 
 void ImagePlausibility::add_motion(const Frame& frame) {

@@ -33,6 +33,13 @@ inline constexpr double kLargestDepth_m = 12.0;  ///< and at most to about 10 m
 /// @return the finding; nullopt if there is none, or no IMU
 [[nodiscard]] std::optional<std::string> gravity_finding(const SequenceInfo& info);
 
+/// By how much the depth of a recording must be larger for its images to follow the true motion.
+struct DepthScaleByTruth {
+  double factor = 1.0;  ///< 1/5 or 5
+  int pairs = 0;        ///< of frames that tell it
+  int all_pairs = 0;    ///< that tell a factor
+};
+
 /// Collects what the images of a sequence tell about the other sensors, one frame after the other.
 class ImagePlausibility {
  public:
@@ -40,6 +47,8 @@ class ImagePlausibility {
 
   /// @param frame the next one; a frame that cannot be decoded is left out
   void add(const Frame& frame);
+  /// What `add` collects for `depth_scale_by_truth` alone.
+  void compare_depth(const Frame& frame);
 
   /// Depth whose smallest values (5 %) are below 0.3 m, or whose largest (5 %) are beyond 12 m, is not that
   /// of an RGB-D camera: millimeters that are read as 1/5000 m, or the other way round.
@@ -48,7 +57,9 @@ class ImagePlausibility {
   /// Compares the scale of depth with the motion of the ground truth: the pixels of a frame are moved into a
   /// later one by their depth, times 1/5, 1 and 5, and the true motion. The factor 1 should give the smallest
   /// difference of gray values, by the frames of which most tell it.
-  /// @return the finding; nullopt if there is none, no ground truth, or no motion
+  /// @return nullopt if the factor is 1, without ground truth, and without motion
+  [[nodiscard]] std::optional<DepthScaleByTruth> depth_scale_by_truth() const;
+  /// @return the finding of `depth_scale_by_truth`
   [[nodiscard]] std::optional<std::string> depth_scale_finding() const;
 
   /// Compares the rates of the gyroscope with the rotation between images (`ImageMotion`), without ground
@@ -107,7 +118,6 @@ class ImagePlausibility {
     Pose T_to_from;  ///< coordinates of the camera
   };
 
-  void compare_depth(const Frame& frame);
   void add_motion(const Frame& frame);
   /// Sums of s for a block of consecutive motions: of products of both sides, without their common gravity.
   struct ScaleSums {

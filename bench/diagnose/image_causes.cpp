@@ -172,6 +172,20 @@ std::vector<Cause> depth_range_causes(const RecordingSurvey& survey, double unit
            .correction = Correction{.depth_factor = factor}}};
 }
 
+/// By images that the true motion moves over each other.
+std::vector<Cause> depth_unit_by_truth(const RecordingSurvey& survey, double units_per_m) {
+  if (!survey.depth_scale) return {};
+  const auto [factor, pairs, all_pairs] = *survey.depth_scale;
+  return {{.id = "depth_unit",
+           .name = "unit of depth",
+           .evidence = fmt::format(
+               "images follow the motion of the ground truth with {:g} times the depth ({} of {} pairs)",
+               factor, pairs, all_pairs),
+           .remedy = fmt::format("[depth] scale = {:g} in rig.toml", units_per_m / factor),
+           .strength = kFundamental,
+           .correction = Correction{.depth_factor = factor}}};
+}
+
 std::vector<double> intervals_of(const std::vector<Timestamp>& times) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(seconds_between(times[i - 1], times[i]));
@@ -237,7 +251,8 @@ std::vector<Cause> image_causes(const datasets::SequenceInfo& info, const Record
   if (survey.frames.size() < 10) return causes;
   for (const auto& more :
        {content_causes(survey), depth_causes(survey), depth_range_causes(survey, info.rig.depth_units_per_m),
-        dropped_frames(info.frame_times), rounded_stamps(info.frame_times)})
+        depth_unit_by_truth(survey, info.rig.depth_units_per_m), dropped_frames(info.frame_times),
+        rounded_stamps(info.frame_times)})
     causes.insert(causes.end(), more.begin(), more.end());
   return causes;
 }

@@ -11,7 +11,7 @@
 namespace stillpoint::bench {
 
 /// Missing, repeated, uniform, dark, saturated and blurred frames, changes of exposure, missing, repeated and
-/// late depth, gaps and rounding of stamps.
+/// late depth, the unit of depth, gaps and rounding of stamps.
 [[nodiscard]] std::vector<Cause> image_causes(const datasets::SequenceInfo& info,
                                               const RecordingSurvey& survey);
 

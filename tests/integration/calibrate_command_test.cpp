@@ -167,7 +167,7 @@ TEST(CalibrateCommand, RejectsAGroundTruthOfAnotherTimeOrOfSeveralRecordings) {
   EXPECT_NE(several.err.find("--truth"), std::string::npos) << several.err;
 }
 
-TEST(CalibrateCommand, DrawsTheResidualFieldBeforeAndAfter) {
+TEST(CalibrateCommand, DrawsTheResidualFieldBeforeAndAfterWithTheParameters) {
   const TemporaryFolder out;
   const fs::path plot = out.path() / "residuals.svg";
   const ProgramResult result =
@@ -182,6 +182,7 @@ TEST(CalibrateCommand, DrawsTheResidualFieldBeforeAndAfter) {
     rms_px.push_back(std::stod((*match)[1]));
   ASSERT_EQ(rms_px.size(), 2U) << svg;
   EXPECT_LT(rms_px[1], 0.5 * rms_px[0]);
+  EXPECT_NE(svg.find(">rolling_shutter_s<"), std::string::npos) << svg;  // the table of the parameters
   EXPECT_EQ(run_program(calibrate_with({"--plot", plot.string()})).exit_code, 2);  // not replaced
 }
 

@@ -21,6 +21,7 @@
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/config/config_file.h"
 #include "bench/diagnose/evidence/angular_rates.h"
+#include "bench/diagnose/evidence/recording_survey.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/record/output_folder.h"
 #include "bench/run/odometry_run.h"
@@ -262,7 +263,7 @@ datasets::RigFormat out_format_of(const CalibrateArguments& arguments) {
 }
 
 void write_plot(const CalibrateArguments& arguments, const datasets::SensorStream& stream,
-                const CalibrationResult& result) {
+                const CalibrationSubject& subject, const CalibrationResult& result) {
   constexpr double kPixelsPerPoint = report::theme::kPixelsPerInch / 72.0;
   if (!result.has_held_out) {
     spdlog::warn(
@@ -270,8 +271,9 @@ void write_plot(const CalibrateArguments& arguments, const datasets::SensorStrea
         "written");
     return;
   }
-  const std::array<report::Drawing, 1> figure{residual_figure(result.held_out, stream.info().rig.camera)};
-  report::write_drawings(arguments.plot, figure, kPixelsPerPoint, rules_of(arguments));
+  const std::array<report::Drawing, 2> figures{residual_figure(result.held_out, stream.info().rig.camera),
+                                               parameter_figure(subject, result)};
+  report::write_drawings(arguments.plot, figures, kPixelsPerPoint, rules_of(arguments));
 }
 
 /// @return empty if interrupted
@@ -286,6 +288,8 @@ std::vector<Recording> open_recordings(const CalibrateArguments& arguments) {
     auto stream = open_stream(arguments, sequence, false);
     if (!stream) return {};
     for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
+    for (const std::string& warning : stream->info().warnings) spdlog::warn("{}", warning);
+    require_depth_or_imu(*stream);
     recordings.push_back(opened_recording(arguments, sequence, std::move(stream)));
     const Recording& first = recordings.front();
     if (const std::string text = stated_difference(first.input, recordings.back().input); !text.empty())
@@ -343,7 +347,7 @@ int calibrate_sequences(const CalibrateArguments& arguments) {
   std::cout << (arguments.json ? calibration_json(subject, result) : calibration_table(subject, result));
   if (!arguments.out.empty())
     write_output(arguments.out, calibration_file_text(subject, result, format), rules_of(arguments));
-  if (!arguments.plot.empty()) write_plot(arguments, *recordings.front().stream, result);
+  if (!arguments.plot.empty()) write_plot(arguments, *recordings.front().stream, subject, result);
   if (result.interrupted) return kExitInterrupted;
   return result.usable ? kExitOk : kExitInconclusive;
 }
@@ -362,7 +366,9 @@ Command calibrate_command() {
           {{"SEQ", "Sequence folders, bags or preset names, of one device", &a->sequences},
            {"--out", "Rig file to write; an existing file is not replaced", &a->out},
            {"--plot",
-            "Figure of the held-out residuals over the image, before and after (.pdf, .svg, .png or .html)",
+            "Figure of the held-out residuals over the image, before and after, and of the parameters (.pdf, "
+            ".svg, "
+            ".png or .html)",
             &a->plot},
            {"--out-format", "Program that is to read --out: " + enum_list<datasets::RigFormat>() + " [toml]",
             &a->out_format},

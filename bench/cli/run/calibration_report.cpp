@@ -2,6 +2,7 @@
 #include "bench/cli/run/calibration_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -398,6 +399,33 @@ void add_text(report::Drawing& drawing, const Point2& at, const std::string& tex
 
 }  // namespace
 
+report::Drawing parameter_figure(const CalibrationSubject& subject, const CalibrationResult& result) {
+  constexpr double kRow = 12.0, kColumnsAt[] = {kMargin, 100.0, 130.0, 180.0, 230.0, 280.0};
+  report::Drawing drawing{.width = 2.0 * kPanelWidth + 3.0 * kMargin,
+                          .height = kRow * (static_cast<double>(result.parameters.size()) + 3.0),
+                          .title = "Parameters",
+                          .unit_is_a_point = true};
+  double y = kRow;
+  const auto add_row = [&](const std::array<std::string, 6>& cells, const report::Color& color) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      drawing.marks.emplace_back(report::Label{
+          .at = {kColumnsAt[i], y}, .text = cells[i], .size = theme::kFontSizePt, .color = color});
+    y += kRow;
+  };
+  add_text(drawing, {kMargin, y}, "calibration from " + report::clean_line(subject.sequence));
+  y += 1.5 * kRow;
+  add_row({"parameter", "unit", "value", "deviation", "stated", "conclusion"}, theme::kBlack);
+  add_line(drawing, {{kMargin, y - 0.75 * kRow}, {drawing.width - kMargin, y - 0.75 * kRow}}, theme::kFrame,
+           theme::kFrameWidth);
+  for (const ParameterEstimate& p : result.parameters)
+    add_row({p.name, p.unit, number_text(p.value, p.sigma), number_text(p.sigma, p.sigma),
+             number_text(p.stated, p.sigma), outcome_text(p)},
+            p.outcome == ParameterOutcome::kDiffers  ? theme::kRed
+            : p.outcome == ParameterOutcome::kAgrees ? theme::kBlack
+                                                     : theme::kFrame);
+  return drawing;
+}
+
 report::Drawing residual_figure(const HeldOutResiduals& residuals, const Camera& camera) {
   const Field before(residuals.before, camera), after(residuals.after, camera);
   const double side = kPanelWidth / kColumns;
@@ -418,10 +446,10 @@ report::Drawing residual_figure(const HeldOutResiduals& residuals, const Camera&
   add_panel(drawing, before, left[0], side / cell_px);
   add_panel(drawing, after, left[1], side / cell_px);
   add_text(drawing, {left[0], drawing.height - 6.0},
-           fmt::format(
-               "mean reprojection error of a cell of {:.0f} px, second half of the keyframes; a line as long "
-               "as a cell: {:.3f} px",
-               static_cast<double>(camera.width) / kColumns, cell_px));
+           fmt::format("lines: mean of a cell of {:.0f} px, from where points are seen (dots) to where they "
+                       "are predicted, in the "
+                       "second half; the side of a cell is {:.2f} px",
+                       static_cast<double>(camera.width) / kColumns, cell_px));
   return drawing;
 }
 

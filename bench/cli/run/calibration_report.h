@@ -31,6 +31,11 @@ struct CalibrationSubject {
 [[nodiscard]] std::string calibration_file_text(const CalibrationSubject& subject,
                                                 const CalibrationResult& result, datasets::RigFormat format);
 
+/// The parameters as a page of a report; what differs from the stated calibration in red, what was not
+/// observed in gray.
+[[nodiscard]] report::Drawing parameter_figure(const CalibrationSubject& subject,
+                                               const CalibrationResult& result);
+
 /// Mean reprojection error in the cells of a grid over the image, as lines: with the stated calibration, and
 /// with that of the other half. What poses and points cannot absorb, as distortion, shows as a pattern; noise
 /// does not. Both panels have one scale.

@@ -22,6 +22,7 @@
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/diagnose/diagnosis.h"
 #include "bench/diagnose/diagnosis_text.h"
+#include "bench/diagnose/evidence/recording_survey.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/plan/sequence_registry.h"
 #include "core/base/error.h"
@@ -187,6 +188,7 @@ int diagnose_sequence(const DiagnoseArguments& arguments) {
     return kExitFindings;
   }
   if (!stream) return kExitInterrupted;
+  if (arguments.run.empty()) require_depth_or_imu(*stream);
   const Diagnosis diagnosis = diagnose(*stream, options_of(arguments, stream->info(), start));
   std::cout << (arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));
   if (diagnosis.interrupted) return kExitInterrupted;

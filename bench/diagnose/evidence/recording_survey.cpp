@@ -92,6 +92,15 @@ std::vector<RateInterval> RecordingSurvey::rates() const {
   return rates;
 }
 
+void require_depth_or_imu(const datasets::SensorStream& stream) {
+  const datasets::SequenceInfo& info = stream.info();
+  if (!info.imu.empty() || info.frame_times.empty() || !stream.load_frame(0).depth.empty()) return;
+  throw InputError(
+      info.folder.string(),
+      "has neither depth images nor inertial data, one of which the odometry requires; record them, "
+      "or name the topics of a bag (--topics depth=TOPIC)");
+}
+
 RecordingSurvey survey_recording(const datasets::SensorStream& stream, const Trajectory& visual,
                                  const std::function<bool()>& stop_requested) {
   RecordingSurvey survey;
@@ -99,6 +108,7 @@ RecordingSurvey survey_recording(const datasets::SensorStream& stream, const Tra
   const std::vector<Timestamp>& times = stream.info().frame_times;
   if (static_cast<double>(visual.poses.size()) < kMinLocated * static_cast<double>(times.size()))
     alignment.emplace(stream.info().rig.camera);
+  datasets::ImagePlausibility plausibility(stream.info());
   Frame last;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (stop_requested && stop_requested()) break;
@@ -112,6 +122,7 @@ RecordingSurvey survey_recording(const datasets::SensorStream& stream, const Tra
     FrameStatistics statistics{.t = frame.t};
     add_gray(frame.gray, statistics);
     add_depth(frame.depth, statistics);
+    plausibility.compare_depth(frame);
     statistics.same_image = equal(frame.gray, last.gray);
     statistics.same_depth = equal(frame.depth, last.depth);
     statistics.T_now_last =
@@ -119,6 +130,7 @@ RecordingSurvey survey_recording(const datasets::SensorStream& stream, const Tra
     survey.frames.push_back(std::move(statistics));
     last = std::move(frame);
   }
+  survey.depth_scale = plausibility.depth_scale_by_truth();
   return survey;
 }
 

@@ -12,6 +12,7 @@
 #include "bench/diagnose/evidence/angular_rates.h"
 #include "core/geometry/pose.h"
 #include "datasets/sensor_stream.h"
+#include "datasets/sequence_plausibility.h"
 
 namespace stillpoint::bench {
 
@@ -33,11 +34,16 @@ struct FrameStatistics {
 
 struct RecordingSurvey {
   std::vector<FrameStatistics> frames;
-  int unreadable = 0;  ///< frames
+  int unreadable = 0;                                        ///< frames
+  std::optional<datasets::DepthScaleByTruth> depth_scale{};  ///< by which depth is too small
 
   /// Angular rates of the camera between the frames whose images determine them.
   [[nodiscard]] std::vector<RateInterval> rates() const;
 };
+
+/// @throws InputError for a recording without inertial data whose first frame has no depth image: the
+/// odometry locates none of its frames
+void require_depth_or_imu(const datasets::SensorStream& stream);
 
 /// Distance of the pixels of `FrameStatistics::depth`.
 inline constexpr int kSurveyStep_px = 16;

@@ -319,6 +319,18 @@ TEST(ImageCauses, NameTheFramesConcerned) {
   }
 }
 
+/// 2 s of depth in mm, stated as 1/5000 m, had no cause: too short for the scale of the trajectory.
+TEST(ImageCauses, TellTheUnitOfDepthByTheTrueMotion) {
+  TurningRig rig({});
+  rig.info.rig.depth_units_per_m = 5000.0;
+  rig.survey.depth_scale = datasets::DepthScaleByTruth{.factor = 5.0, .pairs = 48, .all_pairs = 48};
+  const std::vector<Cause> causes = image_causes(rig.info, rig.survey);
+  const Cause* const found = cause_named(causes, "depth_unit");
+  ASSERT_TRUE(found);
+  EXPECT_DOUBLE_EQ(found->correction->depth_factor, 5.0);
+  EXPECT_NE(found->remedy.find("scale = 1000 "), std::string::npos) << found->remedy;
+}
+
 TEST(ImageCauses, CountMissingFrames) {
   TurningRig rig({});
   rig.info.frame_times.erase(rig.info.frame_times.begin() + 50, rig.info.frame_times.begin() + 60);
@@ -491,6 +503,21 @@ TEST(TruthReport, NamesWhatTheMotionDoesNotDetermine) {
   for (FrameStatistics& frame : resting.rig.survey.frames) frame.T_now_last = Pose{};
   resting.rig.info.imu.clear();
   EXPECT_EQ(undetermined(resting).size(), 3U);
+}
+
+TEST(RecordingSurvey, RequiresDepthOrInertialData) {
+  class WithoutDepth : public datasets::SmallStream {
+   public:
+    [[nodiscard]] Frame load_frame(std::size_t index) const override {
+      Frame frame = SmallStream::load_frame(index);
+      frame.depth = cv::Mat();
+      return frame;
+    }
+  };
+  WithoutDepth stream;
+  EXPECT_NO_THROW(require_depth_or_imu(stream));
+  stream.info_.imu.clear();
+  EXPECT_THROW(require_depth_or_imu(stream), InputError);
 }
 
 TEST(CorrectedPart, CutsMirrorsAndScalesDepth) {
