@@ -21,9 +21,10 @@ constexpr float kFar_m = 1000.0F;
 constexpr std::array<double, kLightSamples> kOffset_x{0.0, -0.45, 0.2, 0.25};
 constexpr std::array<double, kLightSamples> kOffset_y{0.0, -0.05, 0.4, -0.35};
 /// Sample times in units of the exposure time: mean 0, variance 1/12 as for a box shutter.
-constexpr std::array<double, kLightSamples> kSampleTimes{0.0, 0.0, -0.408, 0.408};
-/// Number of the sample's time among all different ones.
+constexpr std::array<double, kLightSamples> kTimeOffsets{0.0, 0.0, -0.408, 0.408};
+/// Number of the sample's time among all different ones, and the first sample of each time.
 constexpr std::array<std::size_t, kLightSamples> kTimeOfSample{0, 0, 1, 2};
+constexpr std::array<std::size_t, kSampleTimes> kSampleOfTime{0, 2, 3};
 /// Added to the mip level before rounding down: averaging over the samples blends two levels (trilinear).
 constexpr std::array<float, kLightSamples> kLevelDither{0.625F, 0.125F, 0.875F, 0.375F};
 /// Each sample covers about half a pixel's width; a filter width of sqrt(1/2) px trades blur for aliasing.
@@ -31,7 +32,7 @@ constexpr float kLevelBias = -0.5F;
 
 /// Ray time of a light sample.
 float sample_time(const Exposure& exposure, std::size_t pose_row, std::size_t sample) {
-  const auto offset = static_cast<float>(kSampleTimes[sample]);
+  const auto offset = static_cast<float>(kTimeOffsets[sample]);
   return std::clamp(exposure.mid_times[pose_row] + offset * exposure.exposure_fraction_of_span, 0.0F, 1.0F);
 }
 
@@ -76,13 +77,14 @@ struct FrameRenderer::Job {
   const RayTracer::Movers* movers;
   std::vector<std::array<View, kLightSamples>> views;  // per row
   VisibleWorld visible;
-  std::vector<MoverTiles> tiles;                // one, or one per light sample
-  std::span<const SurfaceTiles> quads, moving;  // one per sample time, or none: rays are traced
+  std::vector<MoverTiles> tiles;         // one, or one per light sample
+  const SurfaceTiles* quads = nullptr;   // without, rays are traced
+  const SurfaceTiles* moving = nullptr;  // without, nothing moves
   [[nodiscard]] bool may_show_movers(const Block& block, std::size_t sample) const {
     return movers != nullptr && tiles[std::min(sample, tiles.size() - 1)].is_marked(block.row, block.column);
   }
   [[nodiscard]] const View& view(int row, std::size_t sample) const {
-    return views[views.size() == 1 ? 0 : static_cast<std::size_t>(row)][sample];
+    return views[views.size() == 1 ? 0 : static_cast<std::size_t>(row)][kSampleOfTime[kTimeOfSample[sample]]];
   }
 };
 
@@ -109,7 +111,7 @@ std::vector<MoverTiles> mover_tiles(const Exposure& exposure, const MovingMesh& 
 
 }  // namespace
 
-double sample_time_offset(int index) { return kSampleTimes[static_cast<std::size_t>(index)]; }
+double sample_time_offset(int index) { return kTimeOffsets[static_cast<std::size_t>(index)]; }
 
 FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const Camera& camera)
     : world_(world), tracer_(tracer), camera_(camera) {
@@ -131,7 +133,7 @@ FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const 
 
 const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const MoverFrame* movers,
                                            RenderBuffers& buffers) const {
-  Job job{&exposure, nullptr, {}, {&world_, movers}, {}, {}, {}};
+  Job job{&exposure, nullptr, {}, {&world_, movers}, {}};
   for (const std::array<Pose, kLightSamples>& poses : exposure.poses) {
     std::array<View, kLightSamples> views;
     std::transform(poses.begin(), poses.end(), views.begin(), view_of);
@@ -142,8 +144,8 @@ const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const Mover
   std::optional<RayTracer::Movers> mover_scene;
   if (exposure.poses.size() == 1 && !camera_.has_distortion() && world_.mesh.triangles.empty()) {
     see_surfaces(exposure, has_movers ? &movers->mesh : nullptr, buffers);
-    job.quads = buffers.quads;
-    if (has_movers) job.moving = buffers.moving;
+    job.quads = &buffers.quads;
+    if (has_movers) job.moving = &buffers.moving;
   } else if (has_movers) {
     mover_scene.emplace(tracer_, movers->mesh);
     job.movers = &*mover_scene;
@@ -153,7 +155,7 @@ const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const Mover
   frame.width = camera_.width, frame.height = camera_.height;
   const auto pixels = static_cast<std::size_t>(std::ptrdiff_t{camera_.width} * camera_.height);
   frame.radiance.resize(pixels);
-  frame.depth_m.assign(pixels, 0.0F);
+  frame.depth_m.resize(pixels);
   frame.object.assign(pixels, 0);
   frame.speed_m_per_s.assign(pixels, 0.0F);
   for (int row = 0; row < camera_.height; row += Tile::kRows) {
@@ -165,17 +167,13 @@ const RenderedFrame& FrameRenderer::render(const Exposure& exposure, const Mover
 
 void FrameRenderer::see_surfaces(const Exposure& exposure, const MovingMesh* movers,
                                  RenderBuffers& buffers) const {
-  constexpr std::size_t kTimes = *std::ranges::max_element(kTimeOfSample) + 1;
-  buffers.quads.resize(kTimes);
-  buffers.moving.resize(kTimes);
-  for (std::size_t i = 0; i < kLightSamples; ++i) {
-    if (i > 0 && kTimeOfSample[i] == kTimeOfSample[i - 1]) continue;
-    const Pose& T_w_c = exposure.poses.front()[i];
-    SurfaceTiles& quads = buffers.quads[kTimeOfSample[i]];
-    quads.see_quads(world_.quads, camera_, T_w_c);
-    if (movers == nullptr) continue;
-    buffers.moving[kTimeOfSample[i]].see_triangles(*movers, sample_time(exposure, 0, i), T_w_c, quads);
+  SampleInstants instants;
+  for (std::size_t time = 0; time < kSampleTimes; ++time) {
+    const std::size_t sample = kSampleOfTime[time];
+    instants[time] = {exposure.poses.front()[sample], sample_time(exposure, 0, sample)};
   }
+  buffers.quads.see_quads(world_.quads, camera_, instants);
+  if (movers != nullptr) buffers.moving.see_triangles(*movers, instants, buffers.quads);
 }
 
 template <class Function>
@@ -242,9 +240,10 @@ TileRays FrameRenderer::rays_through(const Tile& tile, std::size_t sample) const
 
 void FrameRenderer::find_surfaces(const Job& job, const LightSample& sample, TileHits& hits) const {
   hits.clear();
-  if (!job.quads.empty()) {
-    job.quads[kTimeOfSample[sample.number]].find(sample.tile, sample.rays, hits);
-    if (!job.moving.empty()) job.moving[kTimeOfSample[sample.number]].find(sample.tile, sample.rays, hits);
+  if (job.quads != nullptr) {
+    const SurfaceTiles::Query query{sample.tile, kTimeOfSample[sample.number], sample.rays};
+    job.quads->find(query, hits);
+    if (job.moving != nullptr) job.moving->find(query, hits);
     return;
   }
   hits.content = TileHits::Content::kAny;
@@ -288,15 +287,16 @@ void FrameRenderer::store(const RayPacket& packet, const Block& block, TileHits&
 
 void FrameRenderer::record_geometry(const Job& job, const Tile& tile, const TileHits& hits,
                                     RenderedFrame& frame) const {
+  for_each_pixel(tile, [&](std::size_t at, int row, int column) {
+    frame.depth_m[pixel_at(row, column)] = hits.surface[at] >= 0 ? 1.0F / hits.inverse_z[at] : 0.0F;
+  });
+  if (*std::ranges::max_element(hits.surface) < TileHits::kMoving) return;
   std::int32_t shown = -1;  // the last surface that moves
   float speed_m_per_s = 0.0F;
   std::uint16_t object = 0;
   for_each_pixel(tile, [&](std::size_t at, int row, int column) {
     const std::int32_t surface = hits.surface[at];
-    if (surface < 0) return;
-    const std::size_t pixel = pixel_at(row, column);
-    frame.depth_m[pixel] = 1.0F / hits.inverse_z[at];
-    if ((surface & TileHits::kMoving) == 0) return;
+    if (surface < TileHits::kMoving) return;
     if (surface != shown) {
       const auto triangle = static_cast<std::size_t>(surface & ~TileHits::kMoving);
       const MoverFrame& movers = *job.visible.movers;
@@ -304,6 +304,7 @@ void FrameRenderer::record_geometry(const Job& job, const Tile& tile, const Tile
       speed_m_per_s = displacement_m(movers.mesh, triangle) / job.exposure->span_s;
       shown = surface;
     }
+    const std::size_t pixel = pixel_at(row, column);
     frame.object[pixel] = object;
     frame.speed_m_per_s[pixel] = speed_m_per_s;
   });

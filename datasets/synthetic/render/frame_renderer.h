@@ -44,7 +44,7 @@ struct RenderedFrame {
 /// Memory that is used again from frame to frame; one per thread.
 struct RenderBuffers {
   RenderedFrame frame;
-  std::vector<SurfaceTiles> quads, moving;  ///< per sample time
+  SurfaceTiles quads, moving;
 };
 
 /// Renders a world through one camera. `render` is thread-safe.

@@ -2,8 +2,10 @@
 #include "datasets/synthetic/render/surface_tiles.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -15,14 +17,14 @@ using Eigen::Vector3f;
 
 constexpr float kFar_m = 1000.0F;
 constexpr float kSameDepth =
-    1.0F - 1e-5F;                      // ratio; coincident surfaces differ by less, labels on boxes by more
-constexpr float kSeam_m = 2e-5F;       // by which surfaces are larger, so that nothing shows between two
-constexpr float kNearest_m = 1e-3F;    // surfaces are clipped here
-constexpr float kDepthMargin = 1e-3F;  // relative; more than rounding errors of planes farther than
-constexpr float kEdgeOn_m = 0.02F;     // this from the camera
-constexpr float kMargin_px = 0.75F;    // light samples are up to 0.45 px beside the center of their pixel
-constexpr int kLanes = 8;              // pixels that are tested together
-constexpr float kFlat = 1e-12F;        // ratio of a squared area: a triangle without an inside
+    1.0F - 1e-5F;                       // ratio; coincident surfaces differ by less, labels on boxes by more
+constexpr float kSeam_m = 2e-5F;        // by which surfaces are larger, so that nothing shows between two
+constexpr float kNearest_m = 1e-3F;     // surfaces are clipped here
+constexpr float kDepthMargin = 1e-3F;   // relative; more than rounding errors of planes farther than
+constexpr float kEdgeOn_m = 0.02F;      // this from the camera
+constexpr float kMargin_px = 0.75F;     // light samples are up to 0.45 px beside the center of their pixel
+constexpr unsigned kAllSides = 0b1111;  // of the image
+constexpr float kFlat = 1e-12F;         // ratio of a squared area: a triangle without an inside
 
 /// Convex polygon in normalized image coordinates; a parallelogram or triangle, clipped by one plane.
 struct Polygon {
@@ -44,20 +46,6 @@ Polygon clipped(const std::array<Vector3f, kCorners>& corners_c) {
     polygon.add(crossing);
   }
   return polygon;
-}
-
-float signed_area(const Polygon& polygon) {
-  float area = 0.0F;
-  for (std::size_t i = 0; i < polygon.count; ++i) {
-    const Vector2f &a = polygon.points[i], &b = polygon.points[(i + 1) % polygon.count];
-    area += a.x() * b.y() - a.y() * b.x();
-  }
-  return area;
-}
-
-LinearForm edge_between(const Vector2f& from, const Vector2f& to, float orientation) {
-  const Vector2f along = orientation * (to - from);
-  return {-along.y(), along.x(), along.y() * from.x() - along.x() * from.y()};
 }
 
 LinearForm linear_form(const Vector3f& coefficients) {
@@ -86,25 +74,45 @@ SeenSurface seen_surface(const std::array<Vector3f, kCorners>& corners_c, std::i
           .surface = surface};
 }
 
-/// Eight pixels or tiles of a row.
-using Floats = float __attribute__((vector_size(32)));
-using Integers = std::int32_t __attribute__((vector_size(32)));
-
-template <class Vector, class T>
-Vector load(const T* from) {
-  Vector values;
-  std::memcpy(&values, from, sizeof values);
-  return values;
+template <std::size_t kCorners>
+bool is_flat(const std::array<Vector3f, kCorners>& corners_c) {
+  const Vector3f edge_u = corners_c[1] - corners_c[0], edge_v = corners_c[kCorners - 1] - corners_c[0];
+  const float area = edge_u.cross(edge_v).squaredNorm();
+  return area <= kFlat * edge_u.squaredNorm() * edge_v.squaredNorm();
 }
+
+/// At a time at which a surface is not seen: outside of all edges.
+constexpr LinearForm kOutside{0.0F, 0.0F, -1.0F};
+constexpr SeenSurface kUnseen{
+    .inverse_depth = {}, .u = {}, .v = {}, .inside = {kOutside, kOutside, kOutside, kOutside}, .surface = -1};
+
+/// Inverse distance of the camera from the plane [1/m].
+float inverse_height(const SeenSurface& seen) {
+  return Vector3f(seen.inverse_depth.a, seen.inverse_depth.b, seen.inverse_depth.c).norm();
+}
+
+/// A linear form in the middle of the exposure, and how far it is from that at other sample times at most.
+struct MovingForm {
+  LinearForm form;
+  float difference = 0.0F;
+
+  /// @param farthest absolute coordinates @param is_known else nothing is known of the other form
+  void allow_for(const LinearForm& other, const Vector2f& farthest, bool is_known) {
+    const float by = std::abs(other.a - form.a) * farthest.x() + std::abs(other.b - form.b) * farthest.y() +
+                     std::abs(other.c - form.c);
+    difference = std::max(difference, is_known ? by : std::numeric_limits<float>::infinity());
+  }
+};
 
 /// Smallest and largest values of a linear form in eight rectangles of a row.
 struct Ranges {
   Floats smallest, largest;
-  Ranges(const LinearForm& form, const Floats& low_x, const Floats& high_x, const Vector2f& low_high_y) {
+  Ranges(const MovingForm& moving, const Floats& low_x, const Floats& high_x, const Vector2f& low_high_y) {
+    const auto& [form, difference] = moving;
     const Floats x_low = form.a * low_x, x_high = form.a * high_x;
     const auto [y_low, y_high] = std::minmax({form.b * low_high_y.x(), form.b * low_high_y.y()});
-    smallest = (x_low < x_high ? x_low : x_high) + y_low + form.c;
-    largest = (x_low < x_high ? x_high : x_low) + y_high + form.c;
+    smallest = (x_low < x_high ? x_low : x_high) + (y_low + form.c - difference);
+    largest = (x_low < x_high ? x_high : x_low) + (y_high + form.c + difference);
   }
 };
 
@@ -128,6 +136,18 @@ struct Window {
   int first_row, end_row, column;
 };
 
+/// The number of a surface, and those of its edges that cross a tile.
+struct Crossed {
+  std::int32_t number;
+  std::array<std::uint8_t, 4> edges{};
+  std::size_t count = 0;
+
+  /// @param bits of the edges
+  Crossed(std::uint32_t seen, std::uint32_t bits) : number(static_cast<std::int32_t>(seen)) {
+    for (; bits != 0; bits &= bits - 1) edges[count++] = static_cast<std::uint8_t>(std::countr_zero(bits));
+  }
+};
+
 /// The search for the nearest surfaces in a tile.
 struct Search {
   const TileRays& rays;
@@ -136,48 +156,46 @@ struct Search {
   alignas(64) std::array<std::int32_t, Tile::kPixels> seen;
 };
 
-/// Tests eight columns of a tile. What is linear in x is computed once for all rows.
-void test(const SeenSurface& surface, std::int32_t number, const Window& window, Search& search) {
+/// Tests eight columns of a tile against some of the edges. What is linear in x is computed once for all
+/// rows.
+template <int kEdges>
+void test(const SeenSurface& surface, const Crossed& crossed, const Window& window, Search& search) {
   const auto x = load<Floats>(search.rays.x.data() + window.column);
   float* const inverse_z = search.hits.inverse_z.data();
   std::int32_t* const seen = search.seen.data();
-  const AlongColumns inverse_depth(surface.inverse_depth, x), side_0(surface.inside[0], x),
-      side_1(surface.inside[1], x), side_2(surface.inside[2], x), side_3(surface.inside[3], x);
+  const AlongColumns inverse_depth(surface.inverse_depth, x);
+  const auto side = [&](std::size_t i) { return AlongColumns(surface.inside[crossed.edges[i]], x); };
+  const std::array<AlongColumns, 4> sides{side(0), side(1), side(2), side(3)};
   for (int row = window.first_row; row < window.end_row; ++row) {
     const int first = row * Tile::kColumns + window.column;
     const float y = search.rays.y[static_cast<std::size_t>(first)];
     const Floats w = inverse_depth(y);
     const auto before = load<Floats>(inverse_z + first);
-    const Integers is_hit = (side_0(y) >= 0.0F) & (side_1(y) >= 0.0F) & (side_2(y) >= 0.0F) &
-                            (side_3(y) >= 0.0F) & (w * kSameDepth > before) & (w <= 1.0F / kNearest_m);
+    Integers is_hit = (w * kSameDepth > before) & (w <= 1.0F / kNearest_m);
+    for (std::size_t i = 0; i < kEdges; ++i) is_hit &= sides[i](y) >= 0.0F;
     const Floats nearest = is_hit ? w : before;
-    const Integers shown = is_hit ? number : load<Integers>(seen + first);
+    const Integers shown = is_hit ? crossed.number : load<Integers>(seen + first);
     std::memcpy(inverse_z + first, &nearest, sizeof nearest);
     std::memcpy(seen + first, &shown, sizeof shown);
   }
 }
 
-/// Records what some pixels of a row show, for those that show a surface.
+void test(const SeenSurface& surface, const Crossed& crossed, const Window& window, Search& search) {
+  constexpr std::array kTests{test<0>, test<1>, test<2>, test<3>, test<4>};
+  kTests[crossed.count](surface, crossed, window, search);
+}
+
+/// Records what eight pixels of a row show, for those that show a surface.
 void record(const SeenSurface& surface, std::int32_t number, std::size_t first, Search& search) {
   const TileRays& rays = search.rays;
   TileHits& hits = search.hits;
   const AlongRow along_u(surface.u, rays.y[first]), along_v(surface.v, rays.y[first]);
-  const std::int32_t* const seen = search.seen.data() + first;
-  const float* const rays_x = rays.x.data() + first;
-  const float* const inverse_z = hits.inverse_z.data() + first;
-  float *const hit_u = hits.u.data() + first, *const hit_v = hits.v.data() + first;
-  std::int32_t* const hit_surface = hits.surface.data() + first;
-  const std::int32_t shown = surface.surface;
-#pragma GCC unroll 1
-#pragma GCC ivdep
-  for (int i = 0; i < kLanes; ++i) {
-    const float z = 1.0F / inverse_z[i];
-    const float u = along_u(rays_x[i]) * z, v = along_v(rays_x[i]) * z;
-    const bool is_shown = seen[i] == number;
-    hit_u[i] = is_shown ? u : hit_u[i];
-    hit_v[i] = is_shown ? v : hit_v[i];
-    hit_surface[i] = is_shown ? shown : hit_surface[i];
-  }
+  const auto x = load<Floats>(rays.x.data() + first), inverse_z = load<Floats>(hits.inverse_z.data() + first);
+  const Floats z = 1.0F / inverse_z;
+  const Integers is_shown = load<Integers>(search.seen.data() + first) == number;
+  store_where(is_shown, (along_u.slope * x + along_u.first) * z, hits.u.data() + first);
+  store_where(is_shown, (along_v.slope * x + along_v.first) * z, hits.v.data() + first);
+  store_where(is_shown, Integers{} + surface.surface, hits.surface.data() + first);
 }
 
 /// Records the only surface in a tile; by the operations of `test` and `record`, for equal rounding.
@@ -217,20 +235,20 @@ void TileHits::clear() {
   surface.fill(-1);
 }
 
-/// A surface in the image: pixels that contain it, and its edges.
+/// A surface in the image at all sample times: pixels that contain it, its edges and its depth.
 struct SurfaceTiles::Outline {
-  std::array<LinearForm, 5> edges{};  ///< positive inside
+  Vector2f low = Vector2f::Constant(std::numeric_limits<float>::infinity()), high = -low;
+  int left = 0, right = -1, top = 0, bottom = -1;
+  std::array<MovingForm, 4> edges{};  ///< positive inside
   std::size_t edge_count = 0;
-  int left, right, top, bottom;
+  MovingForm inverse_depth;
+  bool edge_on = false;  ///< the inverse depth is not known well
 
-  Outline(const Polygon& polygon, const Camera& camera) : edge_count(polygon.count) {
-    Vector2f low = polygon.points[0], high = low;
-    const float orientation = signed_area(polygon) >= 0.0F ? 1.0F : -1.0F;
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-      const Vector2f& point = polygon.points[i];
-      low = low.cwiseMin(point), high = high.cwiseMax(point);
-      edges[i] = edge_between(point, polygon.points[(i + 1) % polygon.count], orientation);
-    }
+  void add(const Polygon& polygon) {
+    for (std::size_t i = 0; i < polygon.count; ++i)
+      low = low.cwiseMin(polygon.points[i]), high = high.cwiseMax(polygon.points[i]);
+  }
+  void find_pixels(const Camera& camera) {
     const auto pixel = [](double center, int size) {
       return static_cast<int>(std::clamp(std::floor(center), -1.0, static_cast<double>(size)));
     };
@@ -242,6 +260,18 @@ struct SurfaceTiles::Outline {
         std::min(camera.height - 1, pixel(high.y() * camera.fy + camera.cy + kMargin_px + 1, camera.height));
   }
   [[nodiscard]] bool is_visible() const { return left <= right && top <= bottom; }
+
+  /// @param farthest absolute coordinates in the image
+  void find_forms(const std::array<SeenSurface, kSampleTimes>& seen, const Vector2f& farthest) {
+    inverse_depth.form = seen[0].inverse_depth;
+    for (std::size_t i = 0; i < edges.size(); ++i) edges[i].form = seen[0].inside[i];
+    for (const SeenSurface& at : seen) {
+      const bool is_seen = at.surface >= 0;
+      inverse_depth.allow_for(at.inverse_depth, farthest, is_seen);
+      for (std::size_t i = 0; i < edges.size(); ++i) edges[i].allow_for(at.inside[i], farthest, is_seen);
+      edge_on = edge_on || !is_seen || inverse_height(at) * kEdgeOn_m > 1.0F;
+    }
+  }
 };
 
 void SurfaceTiles::begin(const Camera& camera) {
@@ -252,7 +282,8 @@ void SurfaceTiles::begin(const Camera& camera) {
   right_ = static_cast<float>((camera.width - camera.cx) / camera.fx);
   top_ = static_cast<float>((camera.cy + 1.0) / camera.fy);
   bottom_ = static_cast<float>((camera.height - camera.cy) / camera.fy);
-  seen_.clear(), entries_.clear();
+  for (std::vector<SeenSurface>& seen : seen_) seen.clear();
+  entries_.clear();
   const auto fx = static_cast<float>(camera.fx), cx = static_cast<float>(camera.cx);
   low_x_.assign(static_cast<std::size_t>(columns_ + kLanes), 0.0F), high_x_ = low_x_;
   for (int column = 0; column < columns_; ++column) {
@@ -262,63 +293,98 @@ void SurfaceTiles::begin(const Camera& camera) {
   }
 }
 
-void SurfaceTiles::see_quads(std::span<const Quad> quads, const Camera& camera, const Pose& T_w_c) {
+unsigned SurfaceTiles::sides_beyond(const Vector3f& p) const {
+  return static_cast<unsigned>(p.x() + left_ * p.z() < 0.0F) |
+         static_cast<unsigned>(right_ * p.z() - p.x() < 0.0F) << 1U |
+         static_cast<unsigned>(p.y() + top_ * p.z() < 0.0F) << 2U |
+         static_cast<unsigned>(bottom_ * p.z() - p.y() < 0.0F) << 3U;
+}
+
+void SurfaceTiles::see_quads(std::span<const Quad> quads, const Camera& camera,
+                             const SampleInstants& instants) {
   begin(camera);
   covered_.assign(static_cast<std::size_t>(columns_ * rows_ + kLanes), 0.0F);
-  const ToCamera to_camera(T_w_c);
+  const std::array<ToCamera, kSampleTimes> to_camera{ToCamera(instants[0].T_w_c), ToCamera(instants[1].T_w_c),
+                                                     ToCamera(instants[2].T_w_c)};
   for (std::size_t i = 0; i < quads.size(); ++i) {
-    if (quads[i].one_sided && quads[i].normal.dot(to_camera.center - quads[i].origin) <= 0.0F) continue;
-    const Vector3f origin = to_camera(quads[i].origin);
-    const Vector3f edge_u = to_camera.R_c_w * quads[i].edge_u, edge_v = to_camera.R_c_w * quads[i].edge_v;
-    add(std::array<Vector3f, 4>{origin, origin + edge_u, origin + edge_u + edge_v, origin + edge_v},
-        static_cast<std::int32_t>(i));
+    const Quad& quad = quads[i];
+    std::array<std::array<Vector3f, 4>, kSampleTimes> corners_c;
+    std::array<bool, kSampleTimes> is_front;
+    for (std::size_t time = 0; time < kSampleTimes; ++time) {
+      const ToCamera& at = to_camera[time];
+      is_front[time] = !quad.one_sided || quad.normal.dot(at.center - quad.origin) > 0.0F;
+      const Vector3f origin = at(quad.origin), edge_u = at.R_c_w * quad.edge_u,
+                     edge_v = at.R_c_w * quad.edge_v;
+      corners_c[time] = {origin, origin + edge_u, origin + edge_u + edge_v, origin + edge_v};
+    }
+    unsigned beyond = kAllSides;
+    for (const auto& corners : corners_c) {
+      for (const Vector3f& corner : corners) beyond &= sides_beyond(corner);
+    }
+    if (beyond != 0) continue;
+    add(corners_c, is_front, static_cast<std::int32_t>(i));
   }
   sort_entries();
 }
 
-void SurfaceTiles::see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c,
+void SurfaceTiles::see_triangles(const MovingMesh& mesh, const SampleInstants& instants,
                                  const SurfaceTiles& before) {
   begin(before.camera_);
   covered_ = before.covered_;
-  const ToCamera to_camera(T_w_c);
-  points_c_.resize(mesh.start.size());
-  for (std::size_t i = 0; i < points_c_.size(); ++i)
-    points_c_[i] = to_camera(mesh.start[i] + time * (mesh.end[i] - mesh.start[i]));
+  beyond_.assign(mesh.start.size(), kAllSides);
+  for (std::size_t time = 0; time < kSampleTimes; ++time) {
+    const ToCamera to_camera(instants[time].T_w_c);
+    points_c_[time].resize(mesh.start.size());
+    for (std::size_t i = 0; i < mesh.start.size(); ++i) {
+      points_c_[time][i] = to_camera(mesh.start[i] + instants[time].time * (mesh.end[i] - mesh.start[i]));
+      beyond_[i] &= sides_beyond(points_c_[time][i]);
+    }
+  }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& [a, b, c] = mesh.triangles[i];
-    const Vector3f &at_a = points_c_[a], &at_b = points_c_[b], &at_c = points_c_[c];
-    if ((at_b - at_a).cross(at_c - at_a).dot(at_a) >= 0.0F) continue;  // its back
-    add(std::array{at_a, at_b, at_c}, TileHits::kMoving | static_cast<std::int32_t>(i));
+    if ((beyond_[a] & beyond_[b] & beyond_[c]) != 0) continue;
+    std::array<std::array<Vector3f, 3>, kSampleTimes> corners_c;
+    std::array<bool, kSampleTimes> is_front;
+    for (std::size_t time = 0; time < kSampleTimes; ++time) {
+      const std::vector<Vector3f>& points_c = points_c_[time];
+      const auto& [at_a, at_b, at_c] = corners_c[time] = {points_c[a], points_c[b], points_c[c]};
+      is_front[time] = (at_b - at_a).cross(at_c - at_a).dot(at_a) < 0.0F;
+    }
+    add(corners_c, is_front, TileHits::kMoving | static_cast<std::int32_t>(i));
   }
   sort_entries();
 }
 
 template <std::size_t kCorners>
-void SurfaceTiles::add(const std::array<Vector3f, kCorners>& corners_c, std::int32_t surface) {
-  const auto beyond = [&](float x, float y, float z) {
-    return std::ranges::all_of(corners_c, [&](const Vector3f& p) { return p.dot(Vector3f(x, y, z)) < 0.0F; });
-  };
-  if (beyond(1, 0, left_) || beyond(-1, 0, right_) || beyond(0, 1, top_) || beyond(0, -1, bottom_)) return;
-  const Polygon polygon = clipped(corners_c);
-  if (polygon.count < 3) return;
-  const Outline outline(polygon, camera_);
-  const Vector3f edge_u = corners_c[1] - corners_c[0], edge_v = corners_c[kCorners - 1] - corners_c[0];
-  const float area = edge_u.cross(edge_v).squaredNorm();
-  if (!outline.is_visible() || area <= kFlat * edge_u.squaredNorm() * edge_v.squaredNorm()) return;
-  const SeenSurface seen = seen_surface(corners_c, surface);
-  add_to_tiles(outline, seen);
-  seen_.push_back(seen);
+void SurfaceTiles::add(const std::array<std::array<Vector3f, kCorners>, kSampleTimes>& corners_c,
+                       const std::array<bool, kSampleTimes>& is_front, std::int32_t surface) {
+  if (std::ranges::none_of(is_front, std::identity())) return;
+  Outline outline;
+  std::array<SeenSurface, kSampleTimes> seen;
+  for (std::size_t time = 0; time < kSampleTimes; ++time) {
+    const std::array<Vector3f, kCorners>& corners = corners_c[time];
+    seen[time] = kUnseen;
+    if (!is_front[time] || is_flat(corners)) continue;
+    const Polygon polygon = clipped(corners);
+    const SeenSurface at = seen_surface(corners, surface);
+    if (polygon.count < 3 || !std::isfinite(inverse_height(at))) continue;
+    seen[time] = at;
+    outline.add(polygon);
+  }
+  outline.find_pixels(camera_);
+  if (!outline.is_visible()) return;
+  outline.edge_count = kCorners;
+  outline.find_forms(seen, {std::max(left_, right_), std::max(top_, bottom_)});
+  add_to_tiles(outline);
+  for (std::size_t time = 0; time < kSampleTimes; ++time) seen_[time].push_back(seen[time]);
 }
 
-void SurfaceTiles::add_to_tiles(const Outline& outline, const SeenSurface& seen) {
-  const LinearForm& inverse_depth = seen.inverse_depth;
-  const float inverse_height = Vector3f(inverse_depth.a, inverse_depth.b, inverse_depth.c).norm();
-  const bool edge_on = !(inverse_height * kEdgeOn_m <= 1.0F);  // the inverse depth is not known well
+void SurfaceTiles::add_to_tiles(const Outline& outline) {
   for (int row = outline.top / Tile::kRows; row <= outline.bottom / Tile::kRows; ++row)
-    add_to_row(row, outline, seen, edge_on);
+    add_to_row(row, outline);
 }
 
-void SurfaceTiles::add_to_row(int row, const Outline& outline, const SeenSurface& seen, bool edge_on) {
+void SurfaceTiles::add_to_row(int row, const Outline& outline) {
   const auto fy = static_cast<float>(camera_.fy), cy = static_cast<float>(camera_.cy);
   const auto y = static_cast<float>(row * Tile::kRows);
   const Vector2f low_high_y((y - kMargin_px - cy) / fy, (y + Tile::kRows - 1 + kMargin_px - cy) / fy);
@@ -326,20 +392,26 @@ void SurfaceTiles::add_to_row(int row, const Outline& outline, const SeenSurface
   for (int first = outline.left / Tile::kColumns; first <= last; first += kLanes) {
     const auto low_x = load<Floats>(low_x_.data() + first), high_x = load<Floats>(high_x_.data() + first);
     const int first_tile = row * columns_ + first;
-    const Ranges depths(seen.inverse_depth, low_x, high_x, low_high_y);
-    Integers covers = Integers{} - (edge_on ? 0 : 1);
-    Integers seen_in = ~covers | (depths.largest >= load<Floats>(covered_.data() + first_tile));
+    const Ranges depths(outline.inverse_depth, low_x, high_x, low_high_y);
+    const Integers edge_on = Integers{} - (outline.edge_on ? 1 : 0);
+    Integers seen_in = edge_on | (depths.largest >= load<Floats>(covered_.data() + first_tile));
+    Integers edges{};
     for (std::size_t i = 0; i < outline.edge_count; ++i) {
       const Ranges distances(outline.edges[i], low_x, high_x, low_high_y);
-      covers &= distances.smallest > 0.0F;
+      edges |= (distances.smallest <= 0.0F) & (1 << i);
       seen_in &= distances.largest >= 0.0F;
     }
+    const Integers covers =
+        ~edge_on & (edges == 0) & (depths.smallest > 1.0F / kFar_m) & (depths.largest < 1.0F / kNearest_m);
     for (int lane = 0; lane < std::min(kLanes, last + 1 - first); ++lane) {
       if (seen_in[lane] == 0) continue;
-      const float nearest = edge_on ? std::numeric_limits<float>::infinity() : depths.largest[lane];
+      const float nearest = outline.edge_on ? std::numeric_limits<float>::infinity() : depths.largest[lane];
       const auto tile = static_cast<std::uint32_t>(first_tile + lane);
       add_to_tile({row * Tile::kRows, (first + lane) * Tile::kColumns}, outline,
-                  {.tile = tile, .covers = covers[lane] != 0, .nearest = nearest});
+                  {.tile = tile,
+                   .edges = static_cast<std::uint8_t>(edges[lane]),
+                   .covers = covers[lane] != 0,
+                   .nearest = nearest});
       if (covers[lane] != 0)
         covered_[tile] = std::max(covered_[tile], depths.smallest[lane] * (1.0F - kDepthMargin));
     }
@@ -348,7 +420,7 @@ void SurfaceTiles::add_to_row(int row, const Outline& outline, const SeenSurface
 
 /// Completes an entry.
 void SurfaceTiles::add_to_tile(const Tile& tile, const Outline& outline, Entry entry) {
-  entry.seen = static_cast<std::uint32_t>(seen_.size());
+  entry.seen = static_cast<std::uint32_t>(seen_[0].size());
   entry.first_row = static_cast<std::uint8_t>(std::max(0, outline.top - tile.row));
   entry.end_row = static_cast<std::uint8_t>(std::min(Tile::kRows, outline.bottom + 1 - tile.row));
   entry.first_column = static_cast<std::uint8_t>(std::max(0, outline.left - tile.column));
@@ -367,12 +439,14 @@ void SurfaceTiles::sort_entries() {
   for (const Entry& entry : entries_) sorted_[first_[entry.tile + 1]++] = entry;  // then the end of the tile
 }
 
-void SurfaceTiles::find(const Tile& tile, const TileRays& rays, TileHits& hits) const {
+void SurfaceTiles::find(const Query& query, TileHits& hits) const {
+  const auto& [tile, time, rays] = query;
+  const std::vector<SeenSurface>& seen = seen_[time];
   const auto number =
       static_cast<std::size_t>(tile.row / Tile::kRows * columns_ + tile.column / Tile::kColumns);
   const std::size_t begin = first_[number], end = first_[number + 1];
   if (begin == end) return;
-  const SeenSurface& only = seen_[sorted_[begin].seen];
+  const SeenSurface& only = seen[sorted_[begin].seen];
   const bool is_moving = (only.surface & TileHits::kMoving) != 0;  // its light is not baked
   if (hits.content == TileHits::Content::kNothing && end == begin + 1 && sorted_[begin].covers && !is_moving)
     return show_one(only, rays, hits);
@@ -381,18 +455,17 @@ void SurfaceTiles::find(const Tile& tile, const TileRays& rays, TileHits& hits) 
   search.seen.fill(-1);
   for (std::size_t i = begin; i < end; ++i) {
     const Entry& entry = sorted_[i];
-    for (int column = entry.first_column / kLanes * kLanes; column < entry.end_column; column += kLanes) {
-      test(seen_[entry.seen], static_cast<std::int32_t>(entry.seen), {entry.first_row, entry.end_row, column},
-           search);
-    }
+    const Crossed crossed(entry.seen, entry.edges);
+    for (int column = entry.first_column / kLanes * kLanes; column < entry.end_column; column += kLanes)
+      test(seen[entry.seen], crossed, {entry.first_row, entry.end_row, column}, search);
   }
   for (std::size_t first = 0; first < Tile::kPixels; first += kLanes) {
-    std::int32_t recorded = -1;
-    for (std::size_t at = first; at < first + kLanes; ++at) {
-      const std::int32_t seen = search.seen[at];
-      if (seen < 0 || seen == recorded) continue;
-      recorded = seen;
-      record(seen_[static_cast<std::size_t>(recorded)], recorded, first, search);
+    const auto nearest = load<Integers>(search.seen.data() + first);
+    std::uint32_t left = lanes_where(nearest >= 0);
+    while (left != 0) {
+      const std::int32_t shown = nearest[std::countr_zero(left)];
+      record(seen[static_cast<std::size_t>(shown)], shown, first, search);
+      left &= ~lanes_where(nearest == shown);
     }
   }
 }

@@ -12,6 +12,8 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/pose.h"
+#include "datasets/synthetic/render/mover_tiles.h"
+#include "datasets/synthetic/render/pixel_group.h"
 #include "datasets/synthetic/render/ray_tracer.h"
 #include "datasets/synthetic/render/world.h"
 
@@ -60,37 +62,51 @@ struct SeenSurface {
   std::int32_t surface;              ///< see TileHits
 };
 
-/// Its memory is used again from image to image.
+/// The different times of light samples in a frame; the first is in the middle.
+inline constexpr std::size_t kSampleTimes = 3;
+using SampleInstants = std::array<Instant, kSampleTimes>;
+
+/// Surfaces are sorted into tiles once for all sample times of a frame, between which they move little. Its
+/// memory is used again from image to image.
 class SurfaceTiles {
  public:
-  /// Replaces all surfaces by the parallelograms of a world. @param camera without distortion @param T_w_c
-  /// its pose
-  void see_quads(std::span<const Quad> quads, const Camera& camera, const Pose& T_w_c);
+  /// Replaces all surfaces by the parallelograms of a world. @param camera without distortion
+  void see_quads(std::span<const Quad> quads, const Camera& camera, const SampleInstants& instants);
 
-  /// Replaces all surfaces by the triangles of a moving mesh at a ray time, but for those whose back is seen
-  /// (the mesh is closed, and its triangles are counterclockwise seen from outside), and those that are
-  /// hidden by `before`, seen by the same camera from the same pose.
-  void see_triangles(const MovingMesh& mesh, float time, const Pose& T_w_c, const SurfaceTiles& before);
+  /// Replaces all surfaces by the triangles of a moving mesh, but for those whose back is seen (the mesh is
+  /// closed, and its triangles are counterclockwise seen from outside), and those that are hidden by
+  /// `before`, seen by the same camera at the same times.
+  void see_triangles(const MovingMesh& mesh, const SampleInstants& instants, const SurfaceTiles& before);
+
+  /// Light samples of the pixels of a tile.
+  struct Query {
+    Tile tile;
+    std::size_t time;      ///< number of the sample time
+    const TileRays& rays;  ///< at most 0.75 px beside the centers of their pixels
+  };
 
   /// Replaces hits by nearer ones; among surfaces at the same depth (to 1e-5), the one with the lowest
-  /// number. Surfaces nearer than 1 mm are not seen. @param rays at most 0.75 px beside the centers of their
-  /// pixels
-  void find(const Tile& tile, const TileRays& rays, TileHits& hits) const;
+  /// number. Surfaces nearer than 1 mm are not seen.
+  void find(const Query& query, TileHits& hits) const;
 
  private:
   /// A surface in a tile.
   struct Entry {
     std::uint32_t tile, seen;
     std::uint8_t first_row, end_row, first_column, end_column;  ///< of the tile
-    bool covers;                                                ///< all pixels of the tile
-    float nearest;                                              ///< largest inverse depth in the tile [1/m]
+    std::uint8_t edges;  ///< bit i: not all pixels of the tile are inside of edge i
+    bool covers;         ///< all pixels of the tile
+    float nearest;       ///< largest inverse depth in the tile [1/m]
   };
   struct Outline;
   void begin(const Camera& camera);
+  /// Bits of the sides of the image (left, right, top, bottom) on whose plane's far side a point is.
+  [[nodiscard]] unsigned sides_beyond(const Eigen::Vector3f& p) const;
   template <std::size_t kCorners>
-  void add(const std::array<Eigen::Vector3f, kCorners>& corners_c, std::int32_t surface);
-  void add_to_tiles(const Outline& outline, const SeenSurface& seen);
-  void add_to_row(int row, const Outline& outline, const SeenSurface& seen, bool edge_on);
+  void add(const std::array<std::array<Eigen::Vector3f, kCorners>, kSampleTimes>& corners_c,
+           const std::array<bool, kSampleTimes>& is_front, std::int32_t surface);
+  void add_to_tiles(const Outline& outline);
+  void add_to_row(int row, const Outline& outline);
   void add_to_tile(const Tile& tile, const Outline& outline, Entry entry);
   void sort_entries();
 
@@ -99,12 +115,13 @@ class SurfaceTiles {
   std::vector<float> low_x_, high_x_;  ///< sides of the columns of tiles, in normalized coordinates
   float left_ = 0.0F, right_ = 0.0F, top_ = 0.0F,
         bottom_ = 0.0F;  ///< sides of the image, in normalized coordinates, outward
-  std::vector<SeenSurface> seen_;
+  std::array<std::vector<SeenSurface>, kSampleTimes> seen_;
   std::vector<Entry> entries_, sorted_;  ///< `sorted_` by tile and number
   /// Per tile: inverse depth behind which everything is hidden [1/m]; padded for loads of eight.
   std::vector<float> covered_;
   std::vector<std::uint32_t> first_;  ///< per tile: in sorted_
-  std::vector<Eigen::Vector3f> points_c_;
+  std::array<std::vector<Eigen::Vector3f>, kSampleTimes> points_c_;
+  std::vector<unsigned> beyond_;  ///< per point: sides beyond which it is at all times
 };
 
 }  // namespace stillpoint::synth

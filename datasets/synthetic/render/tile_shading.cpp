@@ -14,9 +14,6 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr std::size_t kLanes = 8;  // pixels whose surfaces are treated together
-constexpr std::uint32_t kAllLanes = (1U << kLanes) - 1;
-
 /// log2 from the exponent and a linear approximation of the mantissa; error < 0.09.
 float approximate_log2(float x) {
   const auto bits = std::bit_cast<std::int32_t>(x);
@@ -31,9 +28,7 @@ Vector3f normal_of(const StaticMesh& mesh, const MeshTriangle& triangle) {
 
 /// Which of some pixels show a surface, as bits.
 std::uint32_t lanes_of(std::int32_t surface, const std::int32_t* surfaces) {
-  std::uint32_t lanes = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) lanes |= surfaces[i] == surface ? 1U << i : 0U;
-  return lanes;
+  return lanes_where(load<Integers>(surfaces) == surface);
 }
 
 }  // namespace
@@ -218,13 +213,24 @@ void TileShading::find_mips() {
   static constexpr std::array<std::uint32_t, 2> kBlack{};
   Texture::Level mip{1, 1, kBlack.data()};
   std::int32_t texture = -1, level = 0;  // of `mip`
-  for (std::size_t at = 0; at < Tile::kPixels; ++at) {
+  const auto find = [&](std::size_t at, std::size_t count) {
     if (texture_[at] != texture || level_[at] != level) {
       texture = texture_[at], level = level_[at];
       mip = texture < 0 ? Texture::Level{1, 1, kBlack.data()}
                         : visible_.world->textures[static_cast<std::size_t>(texture)].level(level);
     }
-    mip_[at] = mip.texels, columns_[at] = mip.width, rows_[at] = mip.height;
+    std::fill_n(mip_.begin() + at, count, mip.texels);
+    std::fill_n(columns_.begin() + at, count, mip.width);
+    std::fill_n(rows_.begin() + at, count, mip.height);
+  };
+  for (std::size_t first = 0; first < Tile::kPixels; first += kLanes) {
+    const auto textures = load<Integers>(texture_.data() + first),
+               levels = load<Integers>(level_.data() + first);
+    if (lanes_where((textures == texture_[first]) & (levels == level_[first])) == kAllLanes) {
+      find(first, kLanes);
+    } else {
+      for (std::size_t at = first; at < first + kLanes; ++at) find(at, 1);
+    }
   }
 }
 

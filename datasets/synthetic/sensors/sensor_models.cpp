@@ -156,10 +156,10 @@ void mark_edges(const TrueDepth& image, int row, std::span<std::uint8_t> marks) 
   mark(last, last - std::min<std::size_t>(1, last), last);
 }
 
-/// `std::round` of a value below 2^52, in instructions that process several values.
-double rounded(double value) {
-  const double whole = std::trunc(value);
-  return whole + std::copysign(std::abs(value - whole) >= 0.5 ? 1.0 : 0.0, value);
+/// As `rounded`, of a value of any sign below 2^23.
+float round_away(float value) {
+  const float whole = std::trunc(value);
+  return whole + std::copysign(std::abs(value - whole) >= 0.5F ? 1.0F : 0.0F, value);
 }
 
 /// Row of a depth image. The member is a buffer.
@@ -169,22 +169,22 @@ class DepthRow {
 
   /// @param depth_m true depths
   /// @param noise   of unit variance; NaN where there is no measurement
-  void simulate(std::span<const float> depth_m, std::span<const double> noise, const DepthSensor& sensor,
+  void simulate(std::span<const float> depth_m, std::span<const float> noise, const DepthSensor& sensor,
                 std::uint16_t* out) {
-    const double focal_baseline = sensor.focal_baseline_px_m;
-    for (std::size_t i = 0; i < depth_m.size(); ++i)
-      disparity_[i] = focal_baseline / static_cast<double>(depth_m[i]);
+    const auto focal_baseline = static_cast<float>(sensor.focal_baseline_px_m);
+    for (std::size_t i = 0; i < depth_m.size(); ++i) disparity_[i] = focal_baseline / depth_m[i];
     if (sensor.edge_dropout > 0.0) remove_hidden();
-    for (std::size_t i = 0; i < depth_m.size(); ++i)
-      disparity_[i] += noise[i] * sensor.noise_per_m * focal_baseline;
-    const double step_px = sensor.disparity_step_px;
-    for (std::size_t i = 0; step_px > 0.0 && i < depth_m.size(); ++i)
-      disparity_[i] = rounded(disparity_[i] / step_px) * step_px;
-    const double min_m = sensor.min_m, max_m = sensor.max_m, units_per_m = sensor.units_per_m;
+    const auto noise_px = static_cast<float>(sensor.noise_per_m * sensor.focal_baseline_px_m);
+    for (std::size_t i = 0; i < depth_m.size(); ++i) disparity_[i] += noise[i] * noise_px;
+    const auto step_px = static_cast<float>(sensor.disparity_step_px);
+    for (std::size_t i = 0; step_px > 0.0F && i < depth_m.size(); ++i)
+      disparity_[i] = round_away(disparity_[i] / step_px) * step_px;
+    const auto min_m = static_cast<float>(sensor.min_m), max_m = static_cast<float>(sensor.max_m),
+               units_per_m = static_cast<float>(sensor.units_per_m);
     for (std::size_t i = 0; i < depth_m.size(); ++i) {
-      const double z = focal_baseline / disparity_[i];
-      const bool valid = (disparity_[i] > 0.0) & (z >= min_m) & (z <= max_m);  // not so for NaN
-      const double units = valid ? std::min(rounded(z * units_per_m), 65535.0) : 0.0;
+      const float z = focal_baseline / disparity_[i];
+      const bool valid = (disparity_[i] > 0.0F) & (z >= min_m) & (z <= max_m);  // not so for NaN
+      const float units = valid ? std::min(round_away(z * units_per_m), 65535.0F) : 0.0F;
       out[i] = static_cast<std::uint16_t>(static_cast<int>(units));
     }
   }
@@ -193,18 +193,18 @@ class DepthRow {
   /// Replaces by NaN what is occluded in the second imager: a closer surface projects to the same column of
   /// its image, at column - fb / z. Where there is no surface, the disparity is infinite, and its depth 0.
   void remove_hidden() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    double nearest_column = kInfinity;
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    float nearest_column = kInfinity;
     for (std::size_t i = disparity_.size(); i-- > 0;) {
-      const double in_second = static_cast<double>(i) - disparity_[i];
-      const double column = disparity_[i] < kInfinity ? in_second : kInfinity;
-      const bool hidden = nearest_column <= column - 1.0;
+      const float in_second = static_cast<float>(i) - disparity_[i];
+      const float column = disparity_[i] < kInfinity ? in_second : kInfinity;
+      const bool hidden = nearest_column <= column - 1.0F;
       nearest_column = std::min(nearest_column, column);
-      disparity_[i] = hidden ? std::numeric_limits<double>::quiet_NaN() : disparity_[i];
+      disparity_[i] = hidden ? std::numeric_limits<float>::quiet_NaN() : disparity_[i];
     }
   }
 
-  std::vector<double> disparity_;
+  std::vector<float> disparity_;
 };
 
 }  // namespace
@@ -218,7 +218,7 @@ cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor, std::u
   const auto columns = static_cast<std::size_t>(width);
   const std::array<float, kNormalQuantiles>& normal = normal_quantiles();
   DepthRow simulated(columns);
-  std::vector<double> noise(columns);
+  std::vector<float> noise(columns);
   std::vector<float> correlated(columns);
   std::vector<std::uint8_t> edges(columns);
   for (int row = 0; row < height; ++row) {
@@ -226,14 +226,14 @@ cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor, std::u
     smooth.row(static_cast<std::size_t>(row), correlated);
     for (std::size_t i = 0; i < columns; ++i) {
       const float white = normal[mix_bits(noise_key + first + i) & (kNormalQuantiles - 1)];
-      noise[i] = static_cast<double>(white_weight * white + smooth_weight * correlated[i]);
+      noise[i] = white_weight * white + smooth_weight * correlated[i];
     }
     if (sensor.edge_dropout > 0.0) mark_edges(depth, row, edges);
     for (std::size_t i = 0; sensor.edge_dropout > 0.0 && i < columns; ++i) {
       if (edges[i] == 0) continue;
       const double chance =
           static_cast<double>(mix_bits(noise_key + kDropoutOffset + first + i) >> 11) * 0x1.0p-53;
-      if (chance < sensor.edge_dropout) noise[i] = std::numeric_limits<double>::quiet_NaN();
+      if (chance < sensor.edge_dropout) noise[i] = std::numeric_limits<float>::quiet_NaN();
     }
     simulated.simulate(depth_m.subspan(first, columns), noise, sensor, image.ptr<std::uint16_t>(row));
   }

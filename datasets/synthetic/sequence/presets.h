@@ -180,7 +180,7 @@ void visit_fields(Visitor&& field, Config& request) {
 void check_request(const SynthRequest& request);
 
 /// Incremented whenever the output for an unchanged request changes.
-inline constexpr int kRendererVersion = 11;
+inline constexpr int kRendererVersion = 12;
 
 /// The renderer version and every field of the request, one TOML line each.
 [[nodiscard]] std::string request_text(const SynthRequest& request);
