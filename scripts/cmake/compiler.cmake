@@ -67,16 +67,9 @@ if(STILLPOINT_SANITIZE)
   endif()
 endif()
 
-# stillpoint_position_independent(): the libraries of this folder can be linked into shared objects as well, e.g. into the
-# modules of Python. Functions cannot be replaced at run time, so they are inlined as in other libraries.
-# Builds with sanitizers have no such modules: there, these libraries share the precompiled headers of the others.
-macro(stillpoint_position_independent)
-  if(NOT STILLPOINT_SANITIZE)
-    set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-    set(stillpoint_pic_suffix _pic) # of their precompiled headers
-    add_compile_options(-fno-semantic-interposition)
-  endif()
-endmacro()
+# All code can be linked into shared objects as well, e.g. into the modules of Python, and shares precompiled headers.
+# Functions cannot be replaced at run time, so they are inlined as in other programs.
+add_compile_options(-fPIC -fno-semantic-interposition)
 
 # stillpoint_library(NAME [SOURCES a.cpp ...] [EXCLUDE regex] [HEADERS set] [PUBLIC libs...] [PRIVATE libs...]): one module.
 # Without SOURCES: every .cpp file below the current folder whose path does not match EXCLUDE.

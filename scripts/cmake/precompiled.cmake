@@ -31,9 +31,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # stillpoint_precompiled_headers(SET): compiles the headers of SET (core, bench or test) in this folder, unless another one did.
-# Position-independent code has precompiled headers of its own: stillpoint_precompiled_SET_pic.
 function(stillpoint_precompiled_headers set)
-  set(host stillpoint_precompiled_${set}${stillpoint_pic_suffix})
+  set(host stillpoint_precompiled_${set})
   if(NOT STILLPOINT_PRECOMPILE OR TARGET ${host})
     return()
   endif()
@@ -46,14 +45,14 @@ function(stillpoint_precompiled_headers set)
 endfunction()
 
 # stillpoint_precompile(TARGET SET): uses the headers of SET, which are compiled once for all targets with the same options,
-# and the options of SET. The few position-independent libraries of bench are compiled without.
+# and the options of SET.
 function(stillpoint_precompile target set)
   target_compile_options(${target} PRIVATE ${stillpoint_options_${set}})
-  if(NOT STILLPOINT_PRECOMPILE OR (set STREQUAL "bench" AND stillpoint_pic_suffix))
+  if(NOT STILLPOINT_PRECOMPILE)
     return()
   endif()
   stillpoint_precompiled_headers(${set})
-  target_precompile_headers(${target} REUSE_FROM stillpoint_precompiled_${set}${stillpoint_pic_suffix})
+  target_precompile_headers(${target} REUSE_FROM stillpoint_precompiled_${set})
 endfunction()
 
 # stillpoint_group(TARGET [ACROSS_FOLDERS] [EXCEPT regex]): compiles the sources of TARGET in groups, of one folder or of
