@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/image_motion.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint::datasets {
@@ -108,9 +108,8 @@ std::optional<ImageMotion::Step> ImageMotion::step(const Level& level, const std
     return std::nullopt;
   result.loss /= static_cast<double>(result.visible);
   if (!has_depth_) H.topLeftCorner<3, 3>().setIdentity();
-  const Eigen::LDLT<Eigen::Matrix<double, 7, 7>> factor(H.selfadjointView<Eigen::Lower>());
-  const Eigen::Matrix<double, 7, 1> d = factor.solve(g);
-  if (factor.info() != Eigen::Success || !d.allFinite()) return std::nullopt;
+  const Eigen::Matrix<double, 7, 1> d = solve_symmetric(H, g);
+  if (!d.allFinite()) return std::nullopt;
   result.brightness = d[6];
   result.T = T * Pose{exp_so3(d.segment<3>(3)), d.head<3>()}.inverse();
   result.change = d.segment<3>(3).norm();

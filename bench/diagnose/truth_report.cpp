@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint::bench {
@@ -110,7 +111,7 @@ class MotionFit {
   /// @return nullopt for too few motions, or those that do not determine x
   [[nodiscard]] std::optional<Solution> solve() const {
     if (count_ < kLeastMotions) return std::nullopt;
-    const Eigen::Vector4d x = H_.ldlt().solve(g_);
+    const Eigen::Vector4d x = solve_symmetric(H_, g_);
     const double independent = count_ / (kMotion_s * 30.0) + 1.0;
     const double variance = std::max(0.0, squares_ - g_.dot(x)) / (3.0 * independent);
     const Eigen::Vector4d sigma = (variance * H_.inverse().diagonal().cwiseMax(0.0)).cwiseSqrt();

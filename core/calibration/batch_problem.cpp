@@ -11,6 +11,7 @@
 #include <ceres/solver.h>
 
 #include "core/calibration/depth_patch.h"
+#include "core/geometry/decompositions.h"
 
 namespace stillpoint {
 namespace {
@@ -532,15 +533,15 @@ void BatchProblem::update_imu_noise() {
     const Vector15 r = W.triangularView<Eigen::Lower>().solve(whitened);
     const Matrix15& P = inertial_[k].imu.covariance();
     const Eigen::Vector3d rotation = r.segment<3>(ImuErrorIndex::kRotation);
-    gyro.push_back(std::sqrt(
-        rotation.dot(
-            P.block<3, 3>(ImuErrorIndex::kRotation, ImuErrorIndex::kRotation).ldlt().solve(rotation)) /
-        3.0));
+    gyro.push_back(
+        std::sqrt(rotation.dot(solve_symmetric<3>(
+                      P.block<3, 3>(ImuErrorIndex::kRotation, ImuErrorIndex::kRotation), rotation)) /
+                  3.0));
     Eigen::Matrix<double, 6, 1> motion;
     motion << r.segment<3>(ImuErrorIndex::kPosition), r.segment<3>(ImuErrorIndex::kVelocity);
     Eigen::Matrix<double, 6, 6> P_motion;
     P_motion << P.block<3, 3>(0, 0), P.block<3, 3>(0, 6), P.block<3, 3>(6, 0), P.block<3, 3>(6, 6);
-    accel.push_back(std::sqrt(motion.dot(P_motion.ldlt().solve(motion)) / 3.0));
+    accel.push_back(std::sqrt(motion.dot(solve_symmetric(P_motion, motion)) / 3.0));
   }
   state_.imu_noise.gyro = std::max(1.0, state_.imu_noise.gyro * rms_of(gyro));
   state_.imu_noise.accel = std::max(1.0, state_.imu_noise.accel * rms_of(accel));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/calibration/batch_state.h"
 
+#include "core/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -110,7 +112,7 @@ class LandmarkPositions {
       b += P * T_w_c(seen).p;
     }
     if (directions.front().dot(directions.back()) > kMaxCosine) return std::nullopt;
-    const Eigen::Vector3d point = A.ldlt().solve(b);
+    const Eigen::Vector3d point = solve_symmetric(A, b);
     for (const BatchObservation& seen : landmark.observations) {
       if ((T_w_c(seen).inverse() * point).z() < kNearestPoint_m) return std::nullopt;
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/calibration/depth_patch.h"
 
+#include "core/geometry/decompositions.h"
+
 #include <cmath>
 #include <cstdint>
-
-#include <Eigen/Cholesky>
 
 namespace stillpoint {
 namespace {
@@ -40,7 +40,7 @@ std::optional<DepthFactor::Measurement> depth_patch(const cv::Mat& depth, double
     }
   }
   if (count < kMinPixels) return std::nullopt;
-  const Eigen::Vector3d fit = A.ldlt().solve(b);
+  const Eigen::Vector3d fit = solve_symmetric(A, b);
   const double rms = std::sqrt(std::max(0.0, (squares - fit.dot(b)) / count));
   if (!fit.allFinite() || rms > kMaxRms || fit[0] <= 0.0) return std::nullopt;
   return DepthFactor::Measurement{.inverse_depth = fit[0], .gradient = fit.tail<2>(), .pixel = center};

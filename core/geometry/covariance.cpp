@@ -5,16 +5,15 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include "core/geometry/decompositions.h"
 #include "core/geometry/pose_from_points.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+  return std::sqrt(std::max(0.0, eigenvalues(covariance)[2]));
 }
 
 double chi_square_tail(double x, int degrees_of_freedom) {
@@ -86,7 +85,7 @@ Eigen::Matrix2d projection_covariance(const UncertainPose& camera, const Eigen::
 
 double squared_distance(const Pose& a, const Pose& b, const Matrix6& covariance) {
   const Vector6 d = pose_difference(a, b);
-  return d.dot(covariance.ldlt().solve(d));
+  return d.dot(solve_symmetric(covariance, d));
 }
 
 UncertainPose fuse(const UncertainPose& a, const UncertainPose& b) {

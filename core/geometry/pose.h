@@ -18,28 +18,15 @@ struct Pose {
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
 
-  [[nodiscard]] Pose inverse() const {
-    const Eigen::Quaterniond conjugate = q.conjugate();
-    return Pose{conjugate, -(conjugate * p)};
-  }
+  [[nodiscard]] Pose inverse() const;
   [[nodiscard]] Eigen::Matrix3d R() const { return q.toRotationMatrix(); }
 
-  [[nodiscard]] static Pose from_matrix(const Eigen::Matrix4d& matrix) {
-    return Pose{Eigen::Quaterniond(Eigen::Matrix3d(matrix.topLeftCorner<3, 3>())).normalized(),
-                matrix.topRightCorner<3, 1>()};
-  }
-  [[nodiscard]] Eigen::Matrix4d matrix() const {
-    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-    m.topLeftCorner<3, 3>() = R();
-    m.topRightCorner<3, 1>() = p;
-    return m;
-  }
+  [[nodiscard]] static Pose from_matrix(const Eigen::Matrix4d& matrix);
+  [[nodiscard]] Eigen::Matrix4d matrix() const;
 };
 
 /// Composition: T_a_c = T_a_b * T_b_c.
-[[nodiscard]] inline Pose operator*(const Pose& T_a_b, const Pose& T_b_c) {
-  return Pose{(T_a_b.q * T_b_c.q).normalized(), T_a_b.q * T_b_c.p + T_a_b.p};
-}
+[[nodiscard]] Pose operator*(const Pose& T_a_b, const Pose& T_b_c);
 
 /// Transforms a point: p_a = R_a_b p_b + t_a_b.
 [[nodiscard]] inline Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b) {
@@ -47,8 +34,6 @@ struct Pose {
 }
 
 /// Pose between `a` (s = 0) and `b` (s = 1): slerp of the rotation, linear interpolation of the position.
-[[nodiscard]] inline Pose interpolate(const Pose& a, const Pose& b, double s) {
-  return Pose{a.q.slerp(s, b.q), (1.0 - s) * a.p + s * b.p};
-}
+[[nodiscard]] Pose interpolate(const Pose& a, const Pose& b, double s);
 
 }  // namespace stillpoint

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Cholesky>
-
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -38,7 +37,7 @@ Pose step(const Pose& T_c_w, const Observations& observations, double scale) {
     H.noalias() += weight * J.transpose() * J;
     b.noalias() += weight * J.transpose() * error;
   }
-  const Eigen::Matrix<double, 6, 1> change = -H.ldlt().solve(b);
+  const Eigen::Matrix<double, 6, 1> change = -solve_symmetric(H, b);
   return Pose{exp_so3(change.tail<3>()), change.head<3>()} * T_c_w;
 }
 

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/base/error.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
 
@@ -222,7 +223,7 @@ Eigen::Vector3d estimate_gyro_bias(std::span<const RotationPair> pairs) {
     normal_matrix += J.transpose() * J;
     normal_vector += J.transpose() * (difference + J * imu.gyro_bias());
   }
-  return normal_matrix.ldlt().solve(normal_vector);
+  return solve_symmetric(normal_matrix, normal_vector);
 }
 
 }  // namespace stillpoint

@@ -9,9 +9,9 @@
 #include <random>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "core/geometry/covariance.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/pose_from_points.h"
 #include "core/geometry/so3.h"
 
@@ -106,7 +106,12 @@ std::optional<Pose> align(std::span<const PointPair> pairs, const std::array<std
   const Eigen::Vector3d side = query.col(1) - query.col(0);
   const Eigen::Vector3d other = query.col(2) - query.col(0);
   if (0.5 * side.cross(other).norm() < kMinArea_m2) return std::nullopt;
-  return Pose::from_matrix(Eigen::umeyama(query, match, false));
+  const Eigen::Vector3d mean_q = query.rowwise().mean();
+  const Eigen::Vector3d mean_m = match.rowwise().mean();
+  query.colwise() -= mean_q;
+  match.colwise() -= mean_m;
+  const Eigen::Quaterniond q_m_q(closest_rotation(match * query.transpose()).R);
+  return Pose{q_m_q.normalized(), mean_m - q_m_q * mean_q};
 }
 
 Pose best_sample(std::span<const PointPair> pairs, const RelativePoseOptions& options) {
@@ -155,7 +160,7 @@ Pose refine(std::span<const PointPair> pairs, const std::vector<int>& inliers, P
             const RelativePoseOptions& options) {
   for (int iteration = 0; iteration < kMaxRefinements; ++iteration) {
     const System system = linearize(pairs, inliers, T_m_q, options);
-    const Eigen::Matrix<double, 6, 1> step = -system.H.ldlt().solve(system.g);
+    const Eigen::Matrix<double, 6, 1> step = -solve_symmetric(system.H, system.g);
     if (!step.allFinite()) break;
     T_m_q.p += step.head<3>();
     T_m_q.q = (T_m_q.q * exp_so3(step.tail<3>())).normalized();
@@ -222,8 +227,7 @@ double spread_of(const std::vector<Eigen::Vector2d>& bearings) {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& bearing : bearings)
     covariance += (bearing - mean) * (bearing - mean).transpose() / static_cast<double>(bearings.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0]));
+  return std::sqrt(std::max(0.0, eigenvalues(covariance)[0]));
 }
 
 /// The smaller spread of the inliers in the two images.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "core/base/timestamp.h"
 #include "core/geometry/camera.h"
@@ -41,9 +40,7 @@ struct ImuAxes {
   bool operator==(const ImuAxes&) const = default;
 
   /// A^-1 times both measurements.
-  [[nodiscard]] ImuSample corrected(const ImuSample& measured) const {
-    return {measured.t, gyro.inverse() * measured.gyro_b, accel.inverse() * measured.accel_b};
-  }
+  [[nodiscard]] ImuSample corrected(const ImuSample& measured) const;
 };
 
 /// Ratio of the noise densities with which inertial data is used to the stated ones.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/compare/hand_eye.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "eval/metrics/rpe.h"
 
@@ -29,14 +28,6 @@ Trajectory hand_eye_sample(const Trajectory& path) {
   Trajectory sample{.frame = path.frame, .poses = {}};
   for (std::size_t i = 0; i < path.poses.size(); i += step) sample.poses.push_back(path.poses[i]);
   return sample;
-}
-
-/// The rotation closest to `sum`.
-Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& sum) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
 /// Moments of the rotation vectors of relative motions.
@@ -66,9 +57,8 @@ RotationMoments rotation_moments(const std::vector<MatchedPose>& matches) {
 std::string missing_rotation(const RotationMoments& moments) {
   constexpr double kLeastAngle = 2.0 * std::numbers::pi / 180.0;  // RMS over 0.5 s, about the second axis
   if (moments.count < kMinHandEyeMatches) return "too few poses match in time";
-  const Eigen::Vector3d values =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments.truth, Eigen::EigenvaluesOnly).eigenvalues();
-  const double second = std::sqrt(std::max(values[1], 0.0) / static_cast<double>(moments.count));
+  const double middle = std::max(eigenvalues(moments.truth)[1], 0.0);
+  const double second = std::sqrt(middle / static_cast<double>(moments.count));
   return second < kLeastAngle ? "the motion turns about fewer than two axes" : "";
 }
 
@@ -80,10 +70,10 @@ struct Solution {
 };
 
 Solution solve(const std::vector<MatchedPose>& matches, const RotationMoments& moments) {
-  const Eigen::Matrix3d R_f_g = closest_rotation(moments.correlation);
+  const Eigen::Matrix3d R_f_g = closest_rotation(moments.correlation).R;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const MatchedPose& match : matches) sum += match.gt.R() * (match.est.R() * R_f_g).transpose();
-  const Eigen::Matrix3d R_w_v = closest_rotation(sum);
+  const Eigen::Matrix3d R_w_v = closest_rotation(sum).R;
   Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> b = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 3, 6> J;
@@ -98,7 +88,7 @@ Solution solve(const std::vector<MatchedPose>& matches, const RotationMoments& m
   }
   const double count = static_cast<double>(matches.size());
   mean /= count;
-  const Eigen::Matrix<double, 6, 1> x = H.ldlt().solve(b);
+  const Eigen::Matrix<double, 6, 1> x = solve_symmetric(H, b);
   Solution solution{.T_f_g = {Eigen::Quaterniond(R_f_g), x.head<3>()}};
   double positions = 0.0;
   double rotations = 0.0;

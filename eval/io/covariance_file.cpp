@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/io/covariance_file.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/geometry/decompositions.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::eval {
@@ -25,8 +25,7 @@ bool is_layout(std::size_t columns) {
 
 bool is_semidefinite(const Eigen::Matrix3d& matrix) {
   if (!matrix.allFinite() || !matrix.isApprox(matrix.transpose(), 1e-6)) return matrix.isZero();
-  const Eigen::Vector3d values =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::Vector3d values = eigenvalues(matrix);
   return values[0] >= -kMaxNegative * values[2];
 }
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "core/base/error.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "eval/metrics/statistics.h"
 #include "eval/trajectory/alignment.h"
@@ -91,9 +91,8 @@ Similarity aligned_by_best(std::span<const MatchedPose> reference) {
     squared_m += (by_positions * pose.est.p - pose.gt.p).squaredNorm() / count;
     squared_rad += std::pow(pose.gt.q.angularDistance(mean * pose.est.q), 2) / count;
   }
-  const double across =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()(1);
-  if (squared_m <= squared_rad * std::max(across, 0.0)) return by_positions;
+  const double across = std::max(eigenvalues(covariance)(1), 0.0);
+  if (squared_m <= squared_rad * across) return by_positions;
   return {Pose{mean, mean_gt - mean * mean_est}};
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/trajectory/alignment.h"
 
-#include <Eigen/SVD>
+#include "core/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,13 +45,9 @@ Similarity map_means(const Moments& moments, const Eigen::Quaterniond& q_w_v, do
 }
 
 AlignmentResult fit_rotation(const Moments& moments, bool with_scale) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments.correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
-  const Eigen::Matrix3d R_w_v = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  const Eigen::Vector3d& singular = svd.singularValues();
+  const auto [R_w_v, singular] = closest_rotation(moments.correlation);
   const bool determined = singular(0) > 0.0 && singular(1) > kRankTolerance * singular(0);
-  const double scale = with_scale && singular(0) > 0.0 ? singular.dot(signs) / moments.variance_est : 1.0;
+  const double scale = with_scale && singular(0) > 0.0 ? singular.sum() / moments.variance_est : 1.0;
   return {map_means(moments, Eigen::Quaterniond(R_w_v).normalized(), scale), determined};
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/trajectory/orientations.h"
 
+#include "core/geometry/decompositions.h"
+
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -29,8 +30,8 @@ struct PathShape {
 PathShape shape_of(const Eigen::Matrix3d& covariance, bool vertical) {
   const auto deviation = [](double variance) { return std::sqrt(std::max(variance, 0.0)); };
   if (vertical) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance.topLeftCorner<2, 2>());
-    return {Eigen::Vector3d::UnitZ(), deviation(covariance(2, 2)), deviation(solver.eigenvalues()(1))};
+    const Eigen::Matrix2d horizontal = covariance.topLeftCorner<2, 2>();
+    return {Eigen::Vector3d::UnitZ(), deviation(covariance(2, 2)), deviation(eigenvalues(horizontal)(1))};
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);  // increasing eigenvalues
   return {solver.eigenvectors().col(2), deviation(solver.eigenvalues()(2)),
@@ -107,11 +108,8 @@ FittedRotation fit_about(const Eigen::Matrix3d& mean, const Eigen::Vector3d& axi
 }
 
 FittedRotation fit_freely(const Eigen::Matrix3d& mean) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(mean, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0 ? -1.0 : 1.0;
-  const Eigen::Vector3d signs(1.0, 1.0, sign);
-  return {svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose(),
-          0.5 * (svd.singularValues().dot(signs) - 1.0)};
+  const ClosestRotation fit = closest_rotation(mean);
+  return {fit.R, 0.5 * (fit.singular.sum() - 1.0)};
 }
 
 }  // namespace

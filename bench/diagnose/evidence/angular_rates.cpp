@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint::bench {
@@ -32,10 +32,7 @@ Eigen::Vector3d residual_of(const RatePair& pair, const Eigen::Matrix3d& R_a_b) 
 Eigen::Matrix3d kabsch(std::span<const RatePair> pairs) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const RatePair& pair : pairs) sum += pair.a * pair.b.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  signs.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  return closest_rotation(sum).R;
 }
 
 double median_of(std::vector<double> values) {

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -33,7 +32,7 @@ constexpr double kAccelWalk = 2e-2;  // [m/s^3/sqrt(Hz)]
 
 void adapt(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance, double dt_s,
            double& factor) {
-  const double distance = innovation.dot(covariance.ldlt().solve(innovation));
+  const double distance = innovation.dot(solve_symmetric(covariance, innovation));
   if (!std::isfinite(distance)) return;
   const double step = distance > kExpectedMedian ? kRise : -kFall;
   factor = std::clamp(factor * std::exp(step * std::min(dt_s, kMaxInterval_s)), 1.0, kMaxFactor);

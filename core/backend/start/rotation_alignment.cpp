@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "core/geometry/covariance.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
 #include "core/types/rig_tolerance.h"
@@ -174,7 +175,7 @@ RotationAlignment RotationAligner::aligned(ImuBuffer& imu) const {
   RotationAlignment found{.q_b_c = q_b_c_, .time_offset_s = initial_offset(imu)};
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const NormalEquations equations = normal_equations(found, imu);
-    const Unknowns step = equations.H.ldlt().solve(equations.g);
+    const Unknowns step = solve_symmetric(equations.H, equations.g);
     found.q_b_c = (found.q_b_c * exp_so3(step.head<3>())).normalized();
     found.time_offset_s += step[3];
     found.gyro_bias += step.tail<3>();
@@ -200,7 +201,7 @@ std::optional<RotationAlignment> RotationAligner::align_offset(RotationAlignment
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const NormalEquations equations = normal_equations(initial, imu);
     H = equations.H.bottomRightCorner<4, 4>();
-    const Eigen::Vector4d step = H.ldlt().solve(equations.g.tail<4>());
+    const Eigen::Vector4d step = solve_symmetric<4>(H, equations.g.tail<4>());
     initial.time_offset_s += step[0];
     initial.gyro_bias += step.tail<3>();
   }

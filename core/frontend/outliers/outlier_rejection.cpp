@@ -8,10 +8,10 @@
 #include <optional>
 #include <random>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -60,7 +60,7 @@ Pose step(std::span<const PointObservation> observations, const Pose& T_to_from,
     H += weight * J.transpose() * J;
     b -= weight * J.transpose() * residual;
   }
-  const Vector6 change = H.ldlt().solve(b);
+  const Vector6 change = solve_symmetric(H, b);
   if (!change.allFinite()) return T_to_from;
   return Pose{exp_so3(change.head<3>()), change.tail<3>()} * T_to_from;
 }
