@@ -4,12 +4,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <opencv2/core/mat.hpp>
+#include <memory>
 #include <vector>
+
+#include <opencv2/core/mat.hpp>
 
 namespace stillpoint::synth {
 
 /// Repeating texture. Values are square roots of reflectance, 0..1, which resolves dark tones in eight bits.
+/// Copies share the texels, which do not change.
 class Texture {
  public:
   /// @param rgb CV_8UC3 with power-of-two sides
@@ -28,7 +31,7 @@ class Texture {
   /// @param number 0 .. highest_level()
   [[nodiscard]] Level level(int number) const {
     const Sides& sides = levels_[static_cast<std::size_t>(number)];
-    return {sides.width, sides.height, texels_.data() + sides.first};
+    return {sides.width, sides.height, texels_.get() + sides.first};
   }
 
   /// A color as it is stored.
@@ -43,7 +46,7 @@ class Texture {
     std::size_t first;  ///< in texels_
   };
   std::vector<Sides> levels_;
-  std::vector<std::uint32_t> texels_;
+  std::shared_ptr<std::uint32_t[]> texels_;
 };
 
 }  // namespace stillpoint::synth
