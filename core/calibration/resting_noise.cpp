@@ -39,14 +39,14 @@ Densities allan_densities(std::span<const ImuSample> samples, double interval_s,
   return sum / count * static_cast<double>(size) * interval_s;
 }
 
-struct Window {
+struct RestingWindow {
   Densities densities;
   double seconds = 0.0;
   Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero();
 };
 
 /// @param samples of a second, at least 20
-std::optional<Window> resting_window(std::span<const ImuSample> samples) {
+std::optional<RestingWindow> resting_window(std::span<const ImuSample> samples) {
   const double interval_s =
       seconds_between(samples.front().t, samples.back().t) / static_cast<double>(samples.size() - 1);
   const Densities samples_only = allan_densities(samples, interval_s, interval_s),
@@ -55,15 +55,15 @@ std::optional<Window> resting_window(std::span<const ImuSample> samples) {
   if ((clusters > kMostRatio * samples_only).any() || (samples_only > kMostRatio * clusters).any() ||
       (long_clusters > kMostRatio * clusters).any() || (clusters <= 0.0).any())
     return std::nullopt;
-  Window window{.densities = clusters, .seconds = interval_s * static_cast<double>(samples.size())};
+  RestingWindow window{.densities = clusters, .seconds = interval_s * static_cast<double>(samples.size())};
   for (const ImuSample& sample : samples)
     window.mean_gyro += sample.gyro_b / static_cast<double>(samples.size());
   return window;
 }
 
-std::vector<Window> resting_windows(std::span<const ImuSample> samples) {
+std::vector<RestingWindow> resting_windows(std::span<const ImuSample> samples) {
   constexpr std::size_t kLeastSamples = 20;
-  std::vector<Window> windows;
+  std::vector<RestingWindow> windows;
   std::size_t first = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i > first && seconds_between(samples[i - 1].t, samples[i].t) > kLargestGap_s) first = i;
@@ -79,15 +79,16 @@ std::vector<Window> resting_windows(std::span<const ImuSample> samples) {
 }  // namespace
 
 std::optional<RestingNoise> resting_noise(std::span<const ImuSample> samples) {
-  std::vector<Window> windows = resting_windows(samples);
+  std::vector<RestingWindow> windows = resting_windows(samples);
   if (windows.empty()) return std::nullopt;
   Densities least = windows.front().densities;
-  for (const Window& window : windows) least = least.min(window.densities);
-  std::erase_if(windows, [&](const Window& window) { return (window.densities > kMostRatio * least).any(); });
+  for (const RestingWindow& window : windows) least = least.min(window.densities);
+  std::erase_if(windows,
+                [&](const RestingWindow& window) { return (window.densities > kMostRatio * least).any(); });
   if (windows.empty()) return std::nullopt;
   RestingNoise noise;
   Densities sum = Densities::Zero();
-  for (const Window& window : windows) {
+  for (const RestingWindow& window : windows) {
     noise.seconds += window.seconds;
     noise.gyro_bias += window.seconds * window.mean_gyro;
     sum += window.densities;
