@@ -293,9 +293,32 @@ bool fulfills(const BiasStepRule& rule, const std::vector<MeasuredBiases>& measu
   return explained;
 }
 
+/// Whether the errors of the gyroscope grow like those of a step of its bias. A measurement that ends at t,
+/// of duration T, contains the part min(t - s, T) / T of a step at s. Between the last measurement t_0 with
+/// less than half of the newest error e_n, and the next one, the errors e along e_n therefore grow by
+///
+///   e_1 - e_0 <= |e_n| (t_1 - t_0) / min(t_n - t_0, T).
+///
+/// Images that are displaced at once, as by another readout, have the whole error in the first measurement,
+/// and the same one in all that contain the displacement. The limit is the geometric mean of both cases.
+bool grows_like_step(const std::vector<MeasuredBiases>& measured, const NavState& state) {
+  const std::size_t newest = measured.size() - 1;
+  const Eigen::Vector3d e_n = gyro_bias_error(measured[newest], state).e;
+  const auto part = [&](std::size_t i) {
+    return gyro_bias_error(measured[i], state).e.dot(e_n) / e_n.squaredNorm();
+  };
+  std::size_t first = newest;
+  while (first > 0 && part(first - 1) >= 0.5) --first;
+  if (first == 0 || first == newest) return true;
+  const auto since = [&](std::size_t i) { return seconds_between(measured[first - 1].t, measured[i].t); };
+  const double span_s = 2.0 * kMonitor.bias.interval_s;
+  return part(first) - part(first - 1) <= std::sqrt(since(first) / std::min(since(newest), span_s));
+}
+
 bool is_step(const std::vector<MeasuredBiases>& measured, const NavState& state) {
   const auto gyro = [&](const BiasStepRule& rule) {
-    return fulfills(rule, measured, [&](const auto& biases) { return gyro_bias_error(biases, state); });
+    return fulfills(rule, measured, [&](const auto& biases) { return gyro_bias_error(biases, state); }) &&
+           grows_like_step(measured, state);
   };
   const auto accel = [&](const BiasStepRule& rule) {
     return fulfills(rule, measured, [&](const auto& biases) { return accel_bias_error(biases, state); });
