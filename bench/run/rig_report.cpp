@@ -21,20 +21,22 @@ struct Estimate {
   std::string name;
   double difference = 0.0;
   double sigma = 0.0;
-  double tolerance = 0.0;  ///< what a calibration leaves
-  double observed = 0.0;   ///< largest standard deviation of an observed parameter
-  int axes = 1;            ///< of a vector, whose length the difference is
+  double deviations = 0.0;  ///< of the difference, in those of the estimate and of what a calibration leaves
+  double observed = 0.0;    ///< largest standard deviation of an observed parameter
 };
+
+/// Difference in standard deviations of the estimate and of what a calibration leaves.
+double deviations(double difference, double sigma, double tolerance) {
+  return std::abs(difference) / std::hypot(sigma, tolerance);
+}
 
 /// @param agrees whether the data agrees with the group of parameters that this one is of
 RigFinding finding_of(const Estimate& estimate, bool agrees) {
   RigFinding finding{.parameter = estimate.name, .sigma = estimate.sigma};
-  const double deviations = std::abs(estimate.difference) / std::sqrt(estimate.axes) /
-                            std::hypot(estimate.sigma, estimate.tolerance);
-  if (!agrees && deviations > kSignificant) {
+  if (!agrees && estimate.deviations > kSignificant) {
     finding.result = RigResult::kDiffers;
     finding.difference = estimate.difference;
-  } else if (estimate.sigma <= estimate.observed && deviations <= kLike) {
+  } else if (estimate.sigma <= estimate.observed && estimate.deviations <= kLike) {
     finding.result = RigResult::kAgrees;
   }
   return finding;
@@ -47,8 +49,10 @@ void add_lens(const EstimatedCalibration& calibration, std::vector<RigFinding>& 
   const Eigen::Vector4d difference = -(agrees ? calibration.rig_step.lens : calibration.lens);
   const Camera& camera = calibration.rig.camera;
   const auto add = [&](std::string name, int i, double unit, double observed) {
-    findings.push_back(finding_of({std::move(name), unit * difference[i], unit * (*calibration.lens_sigma)[i],
-                                   unit * rig_tolerance::kLens[static_cast<std::size_t>(i)], unit * observed},
+    const double sigma = (*calibration.lens_sigma)[i];
+    const double tolerance = rig_tolerance::kLens[static_cast<std::size_t>(i)];
+    findings.push_back(finding_of({std::move(name), unit * difference[i], unit * sigma,
+                                   deviations(difference[i], sigma, tolerance), unit * observed},
                                   agrees));
   };
   add("focal length [%]", 0, 100.0, 0.01);
@@ -61,34 +65,38 @@ void add_depth_scale(const EstimatedCalibration& calibration, std::vector<RigFin
   if (!calibration.depth_scale_agrees || !calibration.depth_scale_sigma) return;
   const bool agrees = *calibration.depth_scale_agrees;
   const double difference = agrees ? -calibration.rig_step.depth_scale : calibration.depth_scale - 1.0;
-  findings.push_back(
-      finding_of({"depth scale [%]", 100.0 * difference, 100.0 * *calibration.depth_scale_sigma,
-                  100.0 * rig_tolerance::kDepthScale, 5.0},
-                 agrees));
+  const double sigma = *calibration.depth_scale_sigma;
+  findings.push_back(finding_of({"depth scale [%]", 100.0 * difference, 100.0 * sigma,
+                                 deviations(difference, sigma, rig_tolerance::kDepthScale), 5.0},
+                                agrees));
 }
 
 void add_time_offset(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
   if (!calibration.time_offset_sigma_s || *calibration.time_offset_sigma_s <= 0.0) return;
   const double difference_s = calibration.time_offset_s - calibration.rig.time_offset_s;
-  findings.push_back(
-      finding_of({"time offset [ms]", 1e3 * difference_s, 1e3 * *calibration.time_offset_sigma_s,
-                  1e3 * rig_tolerance::kTimeOffset_s, 5.0},
-                 false));
+  const double sigma_s = *calibration.time_offset_sigma_s;
+  findings.push_back(finding_of({"time offset [ms]", 1e3 * difference_s, 1e3 * sigma_s,
+                                 deviations(difference_s, sigma_s, rig_tolerance::kTimeOffset_s), 5.0},
+                                false));
 }
 
-/// By the extrinsics if they are estimated, else by the alignment at the start.
+/// By the extrinsics if they are estimated, else by the alignment at the start, which contradicts the rig
+/// also where it is not certain about all axes.
 void add_rotation(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
+  const auto add = [&](double angle, double sigma, double by_sigma, bool agrees) {
+    constexpr double kDegrees = 180.0 / M_PI;
+    findings.push_back(finding_of(
+        {"camera rotation on the body [deg]", kDegrees * angle, kDegrees * sigma, by_sigma, 0.5}, agrees));
+  };
   const std::optional<AlignedRotation>& aligned = calibration.aligned_rotation;
-  const bool estimated = calibration.extrinsics_sigma_rad && *calibration.extrinsics_sigma_rad > 0.0;
-  if (!estimated && !aligned) return;
-  const bool agrees = calibration.extrinsics_agree.value_or(!aligned || aligned->agrees);
-  const double angle =
-      estimated ? calibration.T_b_c.q.angularDistance(calibration.rig.T_b_c.q) : aligned->difference_rad;
-  const double sigma = estimated ? *calibration.extrinsics_sigma_rad : aligned->sigma_rad;
-  constexpr double kDegrees = 180.0 / M_PI;
-  findings.push_back(finding_of({"camera rotation on the body [deg]", kDegrees * angle, kDegrees * sigma,
-                                 kDegrees * rig_tolerance::kRotation_rad, 0.5, 3},
-                                agrees));
+  if (calibration.extrinsics_sigma_rad && *calibration.extrinsics_sigma_rad > 0.0) {
+    const double angle = calibration.T_b_c.q.angularDistance(calibration.rig.T_b_c.q);
+    const double sigma = *calibration.extrinsics_sigma_rad;
+    add(angle, sigma, deviations(angle / std::sqrt(3.0), sigma, rig_tolerance::kRotation_rad),
+        calibration.extrinsics_agree.value_or(!aligned || aligned->deviations <= kSignificant));
+  } else if (aligned) {
+    add(aligned->difference_rad, aligned->sigma_rad, aligned->deviations, false);
+  }
 }
 
 }  // namespace

@@ -94,7 +94,8 @@ struct RigStep {
 struct AlignedRotation {
   double difference_rad = 0.0;  ///< from the rig
   double sigma_rad = 0.0;       ///< along the least certain axis
-  bool agrees = true;           ///< else the extrinsics are estimated since
+  /// Of the difference d, sqrt(d^T (C + S)^-1 d / 3), with its covariance C and S what a calibration leaves.
+  double deviations = 0.0;
 };
 
 }  // namespace stillpoint

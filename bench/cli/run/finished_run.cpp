@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -175,7 +176,9 @@ std::optional<AlignedRotation> aligned_rotation_of(const Json& report) {
     if (!finding.at("parameter").get<std::string>().starts_with("camera rotation")) continue;
     return AlignedRotation{.difference_rad = kDegree * finding.at("difference").get<double>(),
                            .sigma_rad = kDegree * finding.at("sigma").get<double>(),
-                           .agrees = finding.at("result") != result_name(RigResult::kDiffers)};
+                           .deviations = finding.at("result") == result_name(RigResult::kDiffers)
+                                             ? std::numeric_limits<double>::infinity()
+                                             : 0.0};
   }
   return std::nullopt;
 }

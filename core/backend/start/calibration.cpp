@@ -104,7 +104,7 @@ std::optional<AlignedRotation> Calibration::aligned_rotation() const {
   if (!rotation_alignment_) return std::nullopt;
   return AlignedRotation{.difference_rad = rotation_alignment_->q_b_c.angularDistance(rig_.T_b_c.q),
                          .sigma_rad = largest_sigma(rotation_alignment_->covariance.topLeftCorner<3, 3>()),
-                         .agrees = !is_aligned_otherwise()};
+                         .deviations = rotation_alignment_->rotation_deviations};
 }
 
 bool Calibration::agrees_with_rig(double contradiction, int degrees_of_freedom) const {

@@ -187,6 +187,9 @@ RotationAlignment RotationAligner::aligned(ImuBuffer& imu) const {
   tolerated.diagonal().head<3>().array() += rig_tolerance::kRotation_rad * rig_tolerance::kRotation_rad;
   tolerated(3, 3) += rig_tolerance::kTimeOffset_s * rig_tolerance::kTimeOffset_s;
   found.rig_contradiction = from_rig.dot(tolerated.llt().solve(from_rig));
+  const Eigen::Vector3d turned = from_rig.head<3>();
+  found.rotation_deviations =
+      std::sqrt(turned.dot(solve_symmetric<3>(tolerated.topLeftCorner<3, 3>(), turned)) / 3.0);
   found.is_certain = largest_sigma(found.covariance.topLeftCorner<3, 3>()) < kCertainRotation_rad &&
                      found.covariance(3, 3) < kCertainOffset_s * kCertainOffset_s;
   return found;

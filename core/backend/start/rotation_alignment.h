@@ -24,7 +24,8 @@ struct RotationAlignment {
   /// d^T (C + S)^-1 d of the difference d of q_b_c and time offset from the rig, with S what a calibration
   /// leaves: four degrees of freedom.
   double rig_contradiction = 0.0;
-  bool is_certain = false;  ///< to 0.3 degrees and 1 ms
+  double rotation_deviations = 0.0;  ///< see AlignedRotation::deviations
+  bool is_certain = false;           ///< to 0.3 degrees and 1 ms
   /// The rotation of the rig was kept: the time offset is certain before, and the contradiction is its own
   /// (one degree of freedom).
   bool is_of_offset_alone = false;

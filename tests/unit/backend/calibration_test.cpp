@@ -214,9 +214,10 @@ TEST(Calibration, EstimatesExtrinsicsSinceRotationsContradictThem) {
   RotationAlignment alignment{.q_b_c = exp_so3({0.0, 0.1, 0.0})};
   alignment.covariance = 1e-6 * Eigen::Matrix4d::Identity();
   alignment.rig_contradiction = 1.0;
+  alignment.rotation_deviations = 0.5;
   EXPECT_FALSE(calibration.align(alignment));
   EXPECT_FALSE(calibration.calibrated_window().is_realigned);
-  EXPECT_TRUE(calibration.aligned_rotation()->agrees);
+  EXPECT_EQ(calibration.aligned_rotation()->deviations, 0.5);
   StateCovariance covariance;
   covariance.lens = 1e-8 * Eigen::Matrix4d::Identity();
   Window window = calibration.calibrated_window();

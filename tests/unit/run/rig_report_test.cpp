@@ -49,14 +49,23 @@ TEST(RigReport, DoesNotCallADoubtedParameterOneThatAgrees) {
 
 TEST(RigReport, NamesTheRotationThatContradictsTheRig) {
   EstimatedCalibration calibration = observed_calibration();
-  calibration.aligned_rotation = {.difference_rad = 0.002, .sigma_rad = 0.002, .agrees = true};
+  calibration.aligned_rotation = {.difference_rad = 0.002, .sigma_rad = 0.002, .deviations = 0.6};
   EXPECT_EQ(rig_report_line({rig_report(calibration).back()}),
             "camera rotation on the body [deg]: agrees (to 0.11)");
-  calibration.aligned_rotation->agrees = false;
+  calibration.aligned_rotation->deviations = 9.0;
   calibration.extrinsics_sigma_rad = 0.002;
   calibration.T_b_c.q = Eigen::AngleAxisd(0.035, Eigen::Vector3d::UnitX());
   EXPECT_EQ(rig_report_line({rig_report(calibration).back()}),
             "camera rotation on the body [deg]: differs by +2.01 (18 sigma)");
+}
+
+/// The camera hardly turned about one axis, but the rotation about the others is wrong.
+TEST(RigReport, NamesARotationThatIsWrongAboutTheAxesThatWereObserved) {
+  EstimatedCalibration calibration = observed_calibration();
+  calibration.aligned_rotation = {.difference_rad = 0.035, .sigma_rad = 0.02, .deviations = 6.0};
+  EXPECT_EQ(rig_report(calibration).back().result, RigResult::kDiffers);
+  calibration.aligned_rotation->deviations = 0.5;
+  EXPECT_EQ(rig_report(calibration).back().result, RigResult::kNotObserved);
 }
 
 TEST(RigReport, SaysWhatWasNotObserved) {
