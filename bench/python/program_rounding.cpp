@@ -3,26 +3,12 @@
 /// several sources emit; in the program that is one with the options of bench
 /// (scripts/cmake/precompiled.cmake), which rounds some products and sums in another order than the copy of
 /// eval. Linked first, this source gives the module the same bits.
-#include <Eigen/SVD>
-
-#include "core/geometry/pose.h"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 using Rotation = Eigen::Quaterniond;
-using Index = Eigen::Index;
-using Plane = Eigen::JacobiRotation<double>;
 
 template struct Eigen::internal::quat_product<1, Rotation, Rotation, double>;
 template Eigen::Vector3d Eigen::QuaternionBase<Rotation>::_transformVector(const Eigen::Vector3d&) const;
 template void Eigen::internal::quaternionbase_assign_impl<Eigen::Matrix3d, 3, 3>::run<Rotation>(
     Eigen::QuaternionBase<Rotation>&, const Eigen::Matrix3d&);
-template void Eigen::internal::real_2x2_jacobi_svd<Eigen::Matrix3d, double, Index>(const Eigen::Matrix3d&,
-                                                                                   Index, Index, Plane*,
-                                                                                   Plane*);
-
-namespace stillpoint::python {
-
-// Their addresses make the compiler emit them.
-Pose (*const volatile kComposition)(const Pose&, const Pose&) = &operator*;
-Pose (Pose::*const volatile kInverse)() const = &Pose::inverse;
-
-}  // namespace stillpoint::python
