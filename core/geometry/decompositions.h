@@ -14,6 +14,7 @@ using ColumnVector = Eigen::Matrix<double, N, 1>;
 
 /// Solution of A x = b by A = L D L^T with pivoting (Eigen::LDLT); N is 3, 4, 6 or 7.
 /// @param A symmetric, semidefinite; its lower triangle is used
+/// @param b right side
 /// @return not finite if A or b is not; zero in directions in which A is zero
 template <int N>
 [[nodiscard]] ColumnVector<N> solve_symmetric(const SquareMatrix<N>& A, const ColumnVector<N>& b);
