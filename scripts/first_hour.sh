@@ -54,7 +54,7 @@ done <<'COMMANDS'
 0|stillpoint eval seq out --json
 0|stillpoint eval seq out --statistics --rpe-delta 0.5s --rpe-delta 5f
 0|stillpoint eval seq out --find-offset
-0|stillpoint eval find-protocol seq out 0.0003 --metric ATE
+0|stillpoint eval find-protocol seq out "$(sed -n 's/.*"ate_rmse_m": \([0-9.]\{7\}\).*/\1/p' out/result.json)" --metric ATE
 0|stillpoint trajectory convert out/trajectory.tum --out poses.csv
 0|stillpoint eval seq poses.csv
 0|stillpoint profile seq --out profile
