@@ -24,8 +24,8 @@ struct RigFinding {
 /// devices are off by (5 % of the depth scale, 1 % of the focal length, 0.025 of k1, 0.5 % of the focal
 /// length for the center, 5 ms, half a degree). With the deviation s of its estimate and of what a
 /// calibration leaves (rig_tolerance.h), it differs if its group contradicts the rig (see Calibration; the
-/// time offset always counts as such) and it is off by more than 3 s, and agrees if it is observed and off by
-/// at most 2 s.
+/// time offset, and the rotation by the alignment at the start, always count as such) and it is off by more
+/// than 3 s, and agrees if it is observed and off by at most 2 s.
 /// @return nothing about parameters that were not estimated, and without `backend.covariance`
 [[nodiscard]] std::vector<RigFinding> rig_report(const EstimatedCalibration& calibration);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Not in the header: to instantiate these functions of Eigen in each file that handles poses takes seconds of
-// compiling.
+// Not in the header: to instantiate these functions of Eigen takes 0.3 s of compiling in each group of
+// sources.
 #include "core/geometry/pose.h"
 
 namespace stillpoint {

@@ -366,9 +366,8 @@ Command calibrate_command() {
           {{"SEQ", "Sequence folders, bags or preset names, of one device", &a->sequences},
            {"--out", "Rig file to write; an existing file is not replaced", &a->out},
            {"--plot",
-            "Figure of the held-out residuals over the image, before and after, and of the parameters (.pdf, "
-            ".svg, "
-            ".png or .html)",
+            "Figure of the held-out residuals over the image, before and after, and of the parameters "
+            "(.pdf, .svg, .png or .html)",
             &a->plot},
            {"--out-format", "Program that is to read --out: " + enum_list<datasets::RigFormat>() + " [toml]",
             &a->out_format},

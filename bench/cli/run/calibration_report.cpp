@@ -447,8 +447,7 @@ report::Drawing residual_figure(const HeldOutResiduals& residuals, const Camera&
   add_panel(drawing, after, left[1], side / cell_px);
   add_text(drawing, {left[0], drawing.height - 6.0},
            fmt::format("lines: mean of a cell of {:.0f} px, from where points are seen (dots) to where they "
-                       "are predicted, in the "
-                       "second half; the side of a cell is {:.2f} px",
+                       "are predicted, in the second half; the side of a cell is {:.2f} px",
                        static_cast<double>(camera.width) / kColumns, cell_px));
   return drawing;
 }

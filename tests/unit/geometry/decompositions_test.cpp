@@ -2,6 +2,8 @@
 // Decompositions against their definitions: products with the matrix that was decomposed.
 #include "core/geometry/decompositions.h"
 
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "core/geometry/so3.h"
