@@ -37,6 +37,14 @@ struct Cause {
   bool consistent = true;      ///< whether all runs show the effect
   /// Error with the correction, or outside of the frames, to that as it is.
   std::optional<double> error_ratio{};
+
+  /// Whether the data itself shows it, or units or axes are wrong: what no effect can refute.
+  [[nodiscard]] bool is_certain() const { return basis == CauseBasis::kShown || strength >= kFundamental; }
+  /// Whether its correction increases the error by more than chance.
+  /// @param effective ratio of errors that counts, see `Diagnosis::least_effect`
+  [[nodiscard]] bool is_refuted(double effective) const {
+    return !is_certain() && error_ratio.value_or(1.0) * effective > 1.0;
+  }
 };
 
 }  // namespace stillpoint::bench

@@ -325,10 +325,8 @@ void erase_consequences(std::vector<Cause>& causes) {
 
 void rank_others(std::vector<Cause>& causes, double effective) {
   std::ranges::stable_sort(causes, {}, [effective](const Cause& cause) {
-    if (cause.basis == CauseBasis::kShown || cause.strength >= kFundamental)
-      return std::tuple(false, CauseBasis::kShown, 0.0);
-    const double ratio = cause.error_ratio.value_or(1.0);
-    return std::tuple(ratio * effective > 1.0, cause.basis, ratio);
+    if (cause.is_certain()) return std::tuple(false, CauseBasis::kShown, 0.0);
+    return std::tuple(cause.is_refuted(effective), cause.basis, cause.error_ratio.value_or(1.0));
   });
 }
 

@@ -32,16 +32,19 @@ std::string title(const Diagnosis& diagnosis) {
          fmt::format("; {}{} trials\n", diagnosis.finished_run ? "the given run and " : "", diagnosis.trials);
 }
 
-/// With their effects; a large one that did not count is not told from chance.
-std::string names_of_others(const Diagnosis& diagnosis) {
+/// A line of the others that are refuted or not, with their effects; a large one that did not count is not
+/// told from chance. Empty without any.
+std::string line_of_others(const Diagnosis& diagnosis, const char* heading, bool refuted) {
+  const double effective = 1.0 - diagnosis.least_effect;
   std::vector<std::string> parts;
   for (const Cause& cause : diagnosis.others) {
-    const bool is_large = cause.error_ratio && *cause.error_ratio <= 1.0 - diagnosis.least_effect;
+    if (cause.is_refuted(effective) != refuted) continue;
+    const bool is_large = cause.error_ratio && *cause.error_ratio <= effective;
     parts.push_back(fmt::format("{} ({}{})", cause.name,
                                 cause.error_ratio ? effect_text(*cause.error_ratio) : "not measured",
                                 is_large ? ", within chance" : ""));
   }
-  return fmt::format("{}", fmt::join(parts, ", "));
+  return parts.empty() ? "" : fmt::format("{}: {}\n", heading, fmt::join(parts, ", "));
 }
 
 nlohmann::ordered_json list(const std::vector<Cause>& causes) {
@@ -59,9 +62,10 @@ nlohmann::ordered_json list(const std::vector<Cause>& causes) {
 
 /// Of a run of another system, with evidence and remedy: the effects are measured with this odometry.
 std::string others_text(const Diagnosis& diagnosis) {
-  if (diagnosis.others.empty()) return "";
-  if (!diagnosis.foreign || !has_unmeasured(diagnosis))
-    return "found, with less effect: " + names_of_others(diagnosis) + "\n";
+  if (!diagnosis.foreign || !has_unmeasured(diagnosis)) {
+    return line_of_others(diagnosis, "found, with less effect", false) +
+           line_of_others(diagnosis, "not a cause, the error is larger without it", true);
+  }
   std::string text = "found; the effect needs a run of this odometry (leave RUN out):\n";
   std::size_t number = 0;
   for (const Cause& cause : diagnosis.others) {

@@ -271,6 +271,19 @@ TEST(DiagnosisText, SaysThatALargeEffectThatDoesNotCountMayBeChance) {
       << text;
 }
 
+/// A depth delay whose correction quadrupled the error was "found, with less effect (+296 %)".
+TEST(DiagnosisText, ListsNoCauseWhoseCorrectionIncreasesTheError) {
+  Diagnosis diagnosis{.error = 0.1, .corrected = 0.1, .least_effect = 0.1};
+  diagnosis.others = {{.id = "blur", .name = "blurred images", .error_ratio = 1.05},
+                      {.id = "truth_late", .name = "late ground truth"},
+                      {.id = "depth_late", .name = "late depth", .error_ratio = 3.96}};
+  const std::string text = diagnosis_text(diagnosis);
+  EXPECT_NE(text.find("\nfound, with less effect: blurred images (+5 %), late ground truth (not measured)\n"
+                      "not a cause, the error is larger without it: late depth (+296 %)\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST(ImageCauses, TellDarkImagesFromBlankOnes) {
   TurningRig rig({});
   for (std::size_t i = 20; i < 25; ++i) {  // to 5 % of the brightness
