@@ -5,10 +5,11 @@
 # stated_error, outcome. Then prints per parameter, of those that the recordings observed: their number, the ratio
 # within 3 claimed deviations, the mean normalized squared error (NEES), and medians of |error|, of the deviation and of
 # the error of the stated values.
-#   scripts/calibration_rigs.sh PROGRAM TABLE.csv SEEDS SEQUENCE...     SEEDS such as "1 2 3"; "" prints TABLE.csv only
+#   scripts/calibration_rigs.sh PROGRAM TABLE.csv SEEDS SEQUENCE...     SEEDS such as "1 2 3"; "" prints TABLE.csv only;
+#                                                                       SEQUENCE: folders
 # Of the imperfections of the sensors, depth_scaled, time_offset, gyro_scale, accel_scale and imu_misalignment change true
-# values, depth_bias and depth_shift those of the depth; the others (noise, blur, g-sensitivity, clock drift) are in no
-# parameter.
+# values, depth_bias and depth_shift those of the depth; the others (noise, blur, g-sensitivity) are in no parameter. The
+# time offset is compared with its mean over the recording, as the clock drifts.
 set -euo pipefail
 program="$1" table="$2" seeds="$3"
 shift 3
@@ -65,9 +66,13 @@ depth_shift() {
     BEGIN { angle = bits / 2 ^ 53 * 6.283185307179586; printf "%.0f %.0f", pixels * cos(angle), pixels * sin(angle) }'
 }
 
-compare() { # SEQUENCE SEED: rows of the table from axes.csv, true.toml, found.toml and found.json
+seconds() { # SEQUENCE: from its first image to the last one
+  { "$program" data check "$1" --json || true; } | awk '/"last_s":/ { print $2 + 0; exit }'
+}
+
+compare() { # SEQUENCE SEED SECONDS: rows of the table from axes.csv, true.toml, found.toml and found.json
   awk -v sequence="$1" -v seed="$2" -v scale="$(amount depth_scaled)" -v offset="$(amount time_offset)" \
-    -v bias="$(amount depth_bias)" -v shift="$(depth_shift)" '
+    -v bias="$(amount depth_bias)" -v shift="$(depth_shift)" -v drift_ppm="$(amount clock_drift)" -v seconds="$3" '
     BEGIN { split(shift, pixels, " "); truth["depth shift x"] = pixels[1]; truth["depth shift y"] = pixels[2]
             truth["depth offset"] = -bias }
     function numbers(text) { gsub(/[][,]/, " ", text); sub(/#.*/, "", text); return text }
@@ -96,7 +101,7 @@ compare() { # SEQUENCE SEED: rows of the table from axes.csv, true.toml, found.t
         error = -0.5 * element * degrees; wrong = value - error; wrong = -wrong
       } else {
         right = name ~ /^T_b_c/ ? 1000 * T["true", 4 * axis] : name == "depth scale" ? scale : \
-                name == "time_offset_s" ? 1000 * (truth[name] + offset) : name == "rolling_shutter_s" ? 1000 * truth[name] : truth[name]
+                name == "time_offset_s" ? 1000 * (truth[name] + offset) + 1e-3 * drift_ppm * seconds / 2 : name == "rolling_shutter_s" ? 1000 * truth[name] : truth[name]
         error = value - right; wrong = stated - right
       }
       printf "%s,%s,%s,%s,%.6g,%.6g,%.6g,%s\n", sequence, seed, name, unit, error, sigma, wrong, outcome
@@ -113,7 +118,7 @@ for seed in $seeds; do
     if "$program" calibrate "$sequence" --fault "rig:seed=$seed" --json --out "$work/found.toml" \
       >"$work/found.json" 2>"$work/err"; then
       true_axes >"$work/axes.csv"
-      compare "$name" "$seed" >>"$table"
+      compare "$name" "$seed" "$(seconds "$sequence")" >>"$table"
     else
       echo "$name,$seed,,,,,,failed: $(tail -n 1 "$work/err" | tr ',' ';')" >>"$table"
     fi

@@ -25,7 +25,11 @@ constexpr double kNoiseKnown_s = 1.5;
 /// 99.99 % a scale 5 % off was kept for 8 s beside a noisy IMU (walking_xyz, fault rig:seed=2: 0.0094 m, with
 /// 99 % 0.0058 m); V1_03, room1 and room3 with an exact rig are the same in all digits.
 constexpr double kOtherScale = 6.63;
-/// Squared difference, in variances, below which a scale that differed is again that of the rig.
+/// Likewise of a lens, with four degrees of freedom. With 99.99 % (and the tolerances of 58926c1) the ATE of
+/// 34 rigs with imperfections, on 13 recorded motions and walking_xyz, was 1.22 times as large, the false
+/// confidence 2.3 % instead of 0.
+constexpr double kOtherLens = 13.28;
+/// Squared difference, in variances, below which a value that differed is again that of the rig.
 constexpr double kLikeRig = 4.0;
 constexpr double kAveragingHalfWidth_s = 0.02;  // as far as samples are available after the newest exposure
 
@@ -135,7 +139,7 @@ void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4
   if (awaits_alignment())
     tolerated.diagonal().tail<2>().array() += config_.extrinsics_sigma_rad * config_.extrinsics_sigma_rad;
   const double contradiction = difference.dot(tolerated.llt().solve(difference));
-  agrees = agrees ? agrees_with_rig(contradiction, local_size(BlockKind::kLens)) : contradiction < kLikeRig;
+  agrees = contradiction < (agrees ? kOtherLens : kLikeRig);
   if (agrees) set_lens(Eigen::Vector4d::Zero(), window);
   lens_found_.reset();
   if (!agrees) lens_found_ = window.lens;

@@ -90,18 +90,30 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   StateCovariance covariance;
   covariance.lens = 1e-6 * Eigen::Matrix4d::Identity();
   EXPECT_TRUE(window.agrees_with_rig.lens);
-  calibration.compare_with_rig({.lens = {0.003, 0.006, 0.0, 0.0}}, covariance, window);
+  calibration.compare_with_rig({.lens = {0.0015, 0.002, 0.0, 0.0}}, covariance, window);
   EXPECT_TRUE(window.agrees_with_rig.lens);
   calibration.compare_with_rig({.lens = {0.02, 0.0, 0.0, 0.0}}, covariance, window);
   EXPECT_FALSE(window.agrees_with_rig.lens);
   window.lens = {0.02, -0.04, 0.0, 0.01};
   calibration.compare_with_rig({}, covariance, window);
   EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d(0.02, -0.04, 0.0, 0.01));
-  window.lens = {0.002, 0.001, 0.0, 0.0};
+  window.lens = {0.001, 0.001, 0.0, 0.0};
   calibration.compare_with_rig({}, covariance, window);
   EXPECT_TRUE(window.agrees_with_rig.lens);
   EXPECT_EQ(window.lens, Eigen::Vector4d::Zero());
   EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d::Zero());
+}
+
+/// home_1 of OpenLORIS with fault rig:seed=34, whose rotations were 40 times as wrong as claimed.
+TEST(Calibration, ASmallDistortionThatIsWellKnownContradictsTheRig) {
+  BackendConfig config = estimating_config();
+  config.estimate_lens = true;
+  Calibration calibration(config, true, {});
+  Window window = calibration.calibrated_window();
+  StateCovariance covariance;
+  covariance.lens = Eigen::Vector4d(0.0005, 0.0004, 0.0003, 0.0003).cwiseAbs2().asDiagonal();
+  calibration.compare_with_rig({.lens = {-0.001, 0.009, 0.0005, 0.0}}, covariance, window);
+  EXPECT_FALSE(window.agrees_with_rig.lens);
 }
 
 /// A calibration and a window that are compared after `seconds` for the second time.
