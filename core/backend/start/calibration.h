@@ -15,10 +15,10 @@ namespace stillpoint {
 
 /// The calibration that a window starts with, and whether it is that of the rig. Estimated extrinsics,
 /// depth scale and lens have the values of the rig until the data contradicts those with
-/// `calibration_agreement_probability`. Then a window starts with what was found so far: rotation and time
-/// offset by a RotationAlignment, depth scale and lens by the window before. The lever arm is estimated by
-/// the window itself. Extrinsics that the configuration keeps constant become variable, too, when a certain
-/// alignment contradicts them.
+/// `calibration_agreement_probability`, or 99 % of depth scale and lens. Then a window starts with what was
+/// found so far: rotation and time offset by a RotationAlignment, depth scale and lens by the window before.
+/// The lever arm is estimated by the window itself. Extrinsics that the configuration keeps constant become
+/// variable, too, when a certain alignment contradicts them.
 class Calibration {
  public:
   Calibration(const BackendConfig& config, bool uses_imu, const Rig& rig);
