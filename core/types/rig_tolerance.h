@@ -14,9 +14,9 @@ inline constexpr double kTimeOffset_s = 0.001;
 inline constexpr double kDepthScale = 0.006;
 /// Focal length (relative), k1, and the principal point in focal lengths: a quarter of a pixel of 500. That
 /// is about what the lens of a batch calibration is off by beyond its claim (calibrate.cpp); with the exact
-/// rig, estimates along 13 recorded and 14 synthetic motions are off by at most 0.0005, 0.0003 and 0.0006
-/// once they claim 0.0005. Twice these values, and four times that of k1, kept a k1 0.009 off that was known
-/// to 0.0004 (home_1 of OpenLORIS: 31 mm and a NEES / 3 of 73 instead of 0.5 mm).
+/// rig, estimates along 28 recorded motions are off by at most 0.0005, 0.0003 and 0.0006 once they claim
+/// 0.0005. Twice these values, and four times that of k1, kept a k1 0.009 off that was known to 0.0004
+/// (OpenLORIS home1-3: 31 mm and a NEES / 3 of 73 instead of 0.5 mm).
 inline constexpr std::array<double, 4> kLens{0.001, 0.001, 0.0005, 0.0005};
 
 }  // namespace stillpoint::rig_tolerance

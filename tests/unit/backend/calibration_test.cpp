@@ -104,7 +104,7 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d::Zero());
 }
 
-/// home_1 of OpenLORIS with fault rig:seed=34, whose rotations were 40 times as wrong as claimed.
+/// OpenLORIS home1-3 with fault rig:seed=34, whose rotations were 40 times as wrong as claimed.
 TEST(Calibration, ASmallDistortionThatIsWellKnownContradictsTheRig) {
   BackendConfig config = estimating_config();
   config.estimate_lens = true;
