@@ -104,7 +104,7 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d::Zero());
 }
 
-/// OpenLORIS home1-3 with fault rig:seed=34, whose rotations were 40 times as wrong as claimed.
+/// OpenLORIS home1-3 with fault rig:seed=34, whose rotations had a NEES / 3 of 43.
 TEST(Calibration, ASmallDistortionThatIsWellKnownContradictsTheRig) {
   BackendConfig config = estimating_config();
   config.estimate_lens = true;
