@@ -18,12 +18,14 @@ constexpr double kMinAgreement_s = 1.0;
 std::optional<double> DepthScale::of_newest(const Window& window) {
   ratios_.clear();
   const Pose T_c_w = window.T_w_c(window.newest()).inverse();
+  const bool is_predicted = window.inertial && window.frames.back().imu_is_reliable;
   for (const Landmark& landmark : window.landmarks) {
     if (!is_usable(landmark) || landmark.last() != window.newest()) continue;
-    const double measured = landmark.observations.back().depth;
-    const double known = (T_c_w * window.position(landmark)).z();
-    if (measured > 0.0 && known > kMonitor.vision.min_depth_m)
-      ratios_.push_back(measured / (window.depth_scale * known));
+    const Observation& observation = landmark.observations.back();
+    const Eigen::Vector3d p_c = T_c_w * window.position(landmark);
+    if (!(observation.depth > 0.0 && p_c.z() > kMonitor.vision.min_depth_m)) continue;
+    if (is_predicted && (p_c.hnormalized() - observation.bearing).norm() > inlier_) continue;
+    ratios_.push_back(observation.depth / (window.depth_scale * p_c.z()));
   }
   if (static_cast<int>(ratios_.size()) < kMonitor.depth_scale.min_landmarks) return std::nullopt;
   const auto middle = ratios_.begin() + static_cast<std::ptrdiff_t>(ratios_.size() / 2);

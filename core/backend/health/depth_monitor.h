@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/backend/window/window.h"
+#include "core/config/monitor_config.h"
 #include "core/types/nav_state.h"
 
 namespace stillpoint {
@@ -13,13 +14,18 @@ namespace stillpoint {
 /// Compares the depths d_k measured in the newest frame with the depths z_k of the same static landmarks at
 /// its predicted pose, as known from earlier frames. The scale is the median of d_k / (s z_k) with the
 /// estimated depth scale s of the window, if at least 15 landmarks are compared and half of the ratios are
-/// within 2 % of it.
+/// within 2 % of it. If inertial data predicts the pose, landmarks that are not seen where they are expected
+/// are left out: those on a person who walks before the camera would have the scale of their own motion.
 class DepthScale {
  public:
+  /// @param focal_px of the camera, > 0
+  explicit DepthScale(double focal_px) : inlier_(kMonitor.vision.pose_inlier_px / focal_px) {}
+
   /// @return nullopt without a common scale
   [[nodiscard]] std::optional<double> of_newest(const Window& window);
 
  private:
+  double inlier_;               ///< largest error of the bearing
   std::vector<double> ratios_;  ///< buffer of `of_newest`
 };
 
@@ -29,7 +35,8 @@ class DepthScale {
 class DepthMonitor {
  public:
   /// @param max_error largest accepted error of the scale; 0 = no check
-  explicit DepthMonitor(double max_error) : max_error_(max_error) {}
+  /// @param focal_px of the camera, > 0
+  DepthMonitor(double max_error, double focal_px) : max_error_(max_error), scale_(focal_px) {}
 
   /// Removes the depths measured in the newest frame if their scale contradicts the landmarks.
   /// @param covariance of the newest state, if it is known: an estimated scale must be certain, unless the

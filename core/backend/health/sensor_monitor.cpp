@@ -51,7 +51,7 @@ SensorMonitor::SensorMonitor(const BackendConfig& backend, const ImuConfig& imu,
       noise_(rig.imu_noise),
       step_(rig.camera.focal_px()),
       biases_(rig.camera.focal_px()),
-      depth_(backend.depth.max_scale_error) {}
+      depth_(backend.depth.max_scale_error, rig.camera.focal_px()) {}
 
 void SensorMonitor::begin_frame(const TrackedFrame& frame, bool bridged) {
   evidence_ = {.t = frame.t, .features = static_cast<int>(frame.features.size()), .bridged = bridged};

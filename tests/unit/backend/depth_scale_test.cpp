@@ -8,6 +8,8 @@
 namespace stillpoint {
 namespace {
 
+constexpr double kDepthFocal_px = 400.0;
+
 Window window_with_depth_factor(double factor) {
   SimulatedWindowOptions options{.frames = 14, .points = 80};
   Window window = simulated_window(options);
@@ -16,7 +18,7 @@ Window window_with_depth_factor(double factor) {
 }
 
 TEST(DepthScale, IsThatOfTheNewestFrame) {
-  DepthScale scale;
+  DepthScale scale(kDepthFocal_px);
   EXPECT_NEAR(scale.of_newest(window_with_depth_factor(1.0)).value(), 1.0, 0.01);
   EXPECT_NEAR(scale.of_newest(window_with_depth_factor(0.9)).value(), 0.9, 0.01);
 }
@@ -25,7 +27,24 @@ TEST(DepthScale, IsThatOfTheNewestFrame) {
 TEST(DepthScale, IsRelativeToTheEstimatedOne) {
   Window window = window_with_depth_factor(0.9);
   window.depth_scale = 0.9;
-  EXPECT_NEAR(DepthScale().of_newest(window).value(), 1.0, 0.01);
+  EXPECT_NEAR(DepthScale(kDepthFocal_px).of_newest(window).value(), 1.0, 0.01);
+}
+
+/// A person who stays in front of a moving camera: his points are not where they are expected, and all of
+/// them nearer by the same factor. His depth was taken for that of a sensor of another scale.
+TEST(DepthScale, IsNotThatOfAPersonBeforeTheCamera) {
+  Window window = window_with_depth_factor(1.0);
+  std::size_t k = 0;
+  for (Landmark& landmark : window.landmarks) {
+    Observation& observation = landmark.observations.back();
+    if (++k % 3 == 0) continue;
+    observation.bearing.x() += 20.0 / kDepthFocal_px;
+    observation.depth *= 0.9;
+  }
+  const std::optional<double> scale = DepthScale(kDepthFocal_px).of_newest(window);
+  EXPECT_NEAR(scale.value_or(1.0), 1.0, 0.01);
+  window.frames.back().imu_is_reliable = false;
+  EXPECT_NEAR(DepthScale(kDepthFocal_px).of_newest(window).value(), 0.9, 0.01);
 }
 
 /// Whether the newest depths are rejected, measured `seconds` after the start with a scale of the rig that is
@@ -35,11 +54,11 @@ bool rejects(DepthMonitor& monitor, double factor, double seconds) {
   window.agrees_with_rig.depth_scale = true;
   window.frames.back().state.t = after(Timestamp{}, seconds);
   monitor.update(std::nullopt, window);
-  return !DepthScale().of_newest(window);
+  return !DepthScale(kDepthFocal_px).of_newest(window);
 }
 
 TEST(DepthMonitor, RejectsAJumpOfAScaleThatIsNotKnown) {
-  DepthMonitor monitor(0.04);
+  DepthMonitor monitor(0.04, kDepthFocal_px);
   EXPECT_FALSE(rejects(monitor, 1.0, 0.0));
   EXPECT_FALSE(rejects(monitor, 1.0, 1.0));
   EXPECT_TRUE(rejects(monitor, 0.9, 1.1));
@@ -49,7 +68,7 @@ TEST(DepthMonitor, RejectsAJumpOfAScaleThatIsNotKnown) {
 
 /// The inertial scale pulls the landmarks away from a scale that was wrong from the first frame on.
 TEST(DepthMonitor, UsesAScaleThatIsNotKnownAndMoves) {
-  DepthMonitor monitor(0.04);
+  DepthMonitor monitor(0.04, kDepthFocal_px);
   EXPECT_FALSE(rejects(monitor, 0.9, 0.0));
   EXPECT_FALSE(rejects(monitor, 1.0, 0.1));
   EXPECT_FALSE(rejects(monitor, 0.97, 1.5));
