@@ -26,6 +26,10 @@ std::optional<NavState> preintegrated(Timestamp begin, Timestamp end, const NavS
   return propagate(start, samples, Eigen::Vector3d::Zero());
 }
 
+bool is_recent(const std::optional<Timestamp>& t, Timestamp now, double seconds) {
+  return t && seconds_between(*t, now) < seconds;
+}
+
 /// See `inertial_error`.
 struct PreintegratedIntervals {
   Eigen::Vector3d f1, f2;
@@ -63,10 +67,12 @@ ErrorCovariance error_covariance(const VisualPoses& poses, const PreintegratedIn
 
 [[gnu::noinline]] bool InertialError::gyro_is_explained() const { return explains(gyro_change_b, gyro_b); }
 
-double InertialError::severity() const {
-  return std::max(
-      accel_w.norm() / (kMonitor.inertial_error.accel + kMonitor.inertial_error.sigmas * accel_sigma),
-      gyro_b.norm() / (kMonitor.inertial_error.gyro + kMonitor.inertial_error.sigmas * gyro_sigma));
+double InertialError::accel_severity() const {
+  return accel_w.norm() / (kMonitor.inertial_error.accel + kMonitor.inertial_error.sigmas * accel_sigma);
+}
+
+double InertialError::gyro_severity() const {
+  return gyro_b.norm() / (kMonitor.inertial_error.gyro + kMonitor.inertial_error.sigmas * gyro_sigma);
 }
 
 VisualPoses independent_poses(const VisualPose& A, const VisualPose& B, const VisualPose& C) {
@@ -135,8 +141,8 @@ std::optional<InertialError> InertialCheck::error_at(const VisualPose& pose, con
   return inertial_error(independent_poses(poses_[*first], B, pose), state, gravity_w, imu);
 }
 
-bool InertialCheck::update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,
-                           ImuBuffer& imu) {
+bool InertialCheck::update(const VisualPose& pose, bool is_confirmed, const NavState& state,
+                           const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
   if (resume_at_ && pose.t < *resume_at_) return consistent_;
   const std::optional<InertialError> error = error_at(pose, state, gravity_w, imu);
   std::erase_if(poses_, [&](const VisualPose& old) {
@@ -144,17 +150,25 @@ bool InertialCheck::update(const VisualPose& pose, const NavState& state, const 
   });
   poses_.push_back(pose);
   if (!error) return consistent_;
-  const double severity = error->severity();
+  const double accel = error->accel_severity(), gyro = error->gyro_severity();
+  const double severity = std::max(accel, gyro);
   agreeing_frames_ = severity < kMonitor.inertial.agreeing_severity ? agreeing_frames_ + 1 : 0;
-  if (severity > kMonitor.inertial.min_change_severity && error->is_explained()) changed_at_ = pose.t;
-  const bool changed =
-      changed_at_ && seconds_between(*changed_at_, pose.t) < kMonitor.inertial.after_change_s;
-  const bool was_missing =
-      missing_at_ && seconds_between(*missing_at_, pose.t) < kMonitor.inertial.after_gap_s;
-  const bool has_reason = changed || was_missing || !std::isfinite(severity);
-  if (!(severity <= 1.0) && has_reason) consistent_ = false;
+  if (severity > kMonitor.inertial.min_change_severity) {
+    if (error->accel_is_explained()) accel_changed_at_ = pose.t;
+    if (error->gyro_is_explained()) gyro_changed_at_ = pose.t;
+  }
+  const bool accel_changed = is_recent(accel_changed_at_, pose.t, kMonitor.inertial.after_change_s);
+  const bool gyro_changed = is_recent(gyro_changed_at_, pose.t, kMonitor.inertial.after_change_s);
+  const bool either = is_confirmed && (accel_changed || gyro_changed);
+  if (is_wrong(accel, accel_changed || either, pose.t) || is_wrong(gyro, gyro_changed || either, pose.t))
+    consistent_ = false;
   if (agreeing_frames_ >= kMonitor.inertial.agreeing_frames && !held_) consistent_ = true;
   return consistent_;
+}
+
+bool InertialCheck::is_wrong(double severity, bool has_changed, Timestamp now) const {
+  if (!std::isfinite(severity)) return true;
+  return severity > 1.0 && (has_changed || is_recent(missing_at_, now, kMonitor.inertial.after_gap_s));
 }
 
 void InertialCheck::interrupt(Timestamp t) {
@@ -169,7 +183,8 @@ void InertialCheck::contradict() {
 
 void InertialCheck::reset() {
   resume_at_.reset();
-  changed_at_.reset();
+  accel_changed_at_.reset();
+  gyro_changed_at_.reset();
   poses_.clear();
   held_ = false;
   consistent_ = true;

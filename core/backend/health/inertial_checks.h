@@ -22,9 +22,10 @@ struct InertialError {
   Eigen::Vector3d accel_change_w;  ///< mean specific force of the second interval less that of the first
   Eigen::Vector3d gyro_change_b;   ///< same for the angular rate
 
-  /// Largest ratio of an error to its limit: |a| to 3 m/s^2, |w| to 0.1 rad/s, each plus four standard
+  /// Ratios of the errors to their limits: |a| to 3 m/s^2, |w| to 0.1 rad/s, each plus four standard
   /// deviations.
-  [[nodiscard]] double severity() const;
+  [[nodiscard]] double accel_severity() const;
+  [[nodiscard]] double gyro_severity() const;
 
   /// Whether the data of a sensor changed as it does when it becomes wrong, during a shock or after a step of
   /// a bias. With the changes f of the specific force and r of the angular rate:
@@ -35,8 +36,6 @@ struct InertialError {
   /// change it. The small error of a sound sensor is sometimes explained by chance.
   [[nodiscard]] bool accel_is_explained() const;
   [[nodiscard]] bool gyro_is_explained() const;
-  /// Either of them.
-  [[nodiscard]] bool is_explained() const { return accel_is_explained() || gyro_is_explained(); }
 };
 
 /// Three poses in temporal order.
@@ -80,17 +79,19 @@ struct VisualPoses {
                                                           const Eigen::Vector3d& gravity_w, ImuBuffer& imu);
 
 /// Compares the inertial data between three visual poses, each at least 50 ms apart, with these poses, see
-/// `inertial_error`. The data is inconsistent if the severity is above 1 and the change of the data
-/// explained an error in the last 0.3 s, or samples were missing in the last 0.5 s; and consistent again
-/// after six frames with half of that severity. Without such a reason vision is wrong, e.g. because it
-/// follows a person in front of the camera.
+/// `inertial_error`. The data of a sensor is inconsistent if its severity is above 1 and its change explained
+/// an error in the last 0.3 s, or samples were missing in the last 0.5 s; and consistent again after six
+/// frames with half of that severity of both sensors. Without such a reason vision is wrong, e.g. because it
+/// follows a person in front of the camera. That the data of the other sensor changed is a reason only if old
+/// points confirm vision: a clock that jumps changes both, but gyroscopes also vibrate.
 class InertialCheck {
  public:
   /// @param pose later than the previous one
+  /// @param is_confirmed by old points
   /// @param state biases of the newest state
   /// @return whether the inertial data is consistent; unchanged if samples or earlier poses are missing
-  bool update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,
-              ImuBuffer& imu);
+  bool update(const VisualPose& pose, bool is_confirmed, const NavState& state,
+              const Eigen::Vector3d& gravity_w, ImuBuffer& imu);
 
   /// Vision did not locate the frame at `t` on the IMU clock: the poses before it and those of the next 0.5
   /// s, in which the window settles, are not compared.
@@ -110,11 +111,14 @@ class InertialCheck {
   [[nodiscard]] std::optional<std::size_t> pose_before(Timestamp t) const;
   [[nodiscard]] std::optional<InertialError> error_at(const VisualPose& pose, const NavState& state,
                                                       const Eigen::Vector3d& gravity_w, ImuBuffer& imu);
+  /// Whether a sensor that errs by `severity` is wrong. @param has_changed in the last 0.3 s
+  [[nodiscard]] bool is_wrong(double severity, bool has_changed, Timestamp now) const;
 
   std::vector<VisualPose> poses_;  ///< of the last 0.2 s
   std::optional<Timestamp> resume_at_;
   std::optional<Timestamp> missing_at_;
-  std::optional<Timestamp> changed_at_;
+  std::optional<Timestamp> accel_changed_at_;  ///< by a vector that explained an error
+  std::optional<Timestamp> gyro_changed_at_;   ///< same
   bool held_ = false;
   bool consistent_ = true;
   int agreeing_frames_ = 0;

@@ -88,11 +88,10 @@ void SensorMonitor::compare_with_prediction(const Expectation& expected, const U
   if (imu_.adapt_noise) noise_.observe(*expected.camera, visual, seconds_between(expected.before.t, t));
 }
 
-bool SensorMonitor::is_refuted(const Window& window, const Pose& predicted, const Pose& T_w_c) {
+double SensorMonitor::added_support(const Window& window, const Pose& predicted, const Pose& T_w_c) {
   old_points_ = old_points(window, backend_.depth, std::move(old_points_));
   const double threshold = kMonitor.vision.witness_inlier_px / rig_.camera.focal_px();
-  return support(old_points_, predicted, threshold) >
-         support(old_points_, T_w_c, threshold) + kMonitor.vision.max_witness_loss;
+  return support(old_points_, T_w_c, threshold) - support(old_points_, predicted, threshold);
 }
 
 void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& imu, Window& window) {
@@ -112,7 +111,8 @@ void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& 
     if (!vision.is_located(false)) inertial_.interrupt(newest.state.t);
     return;
   }
-  if (is_refuted(window, predicted, T_w_c)) return;
+  const double confirmation = added_support(window, predicted, T_w_c);
+  if (confirmation < -kMonitor.vision.max_witness_loss) return;
   compare_with_prediction(expected,
                           {T_w_c, std::pow(expected.white_sigma / inlier_sigma, 2) * vision.covariance},
                           newest.state.t);
@@ -121,7 +121,8 @@ void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& 
   const VisualPose pose{.t = after(newest.state.t, newest.time_offset_s),
                         .T_w_b = product(T_w_c, T_c_b),
                         .covariance = in_frame({T_w_c, vision.covariance}, T_c_b).covariance};
-  if (inertial_.update(pose, expected.before, window.gravity_w, imu) || !was_consistent) return;
+  const bool is_confirmed = confirmation > kMonitor.vision.max_witness_loss;
+  if (inertial_.update(pose, is_confirmed, expected.before, window.gravity_w, imu) || !was_consistent) return;
   evidence_.imu_defect = StatusReason::kImuInconsistent;
   distrust_recent_samples(window);
 }

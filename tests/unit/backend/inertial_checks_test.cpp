@@ -21,13 +21,13 @@ constexpr double kFrame_s = 0.04;
 
 Timestamp at(double seconds) { return after({}, seconds); }
 
-/// Samples of a level body that accelerates along x from `begin_s` on.
-ImuBuffer samples_of(double accel, double begin_s) {
+/// Samples of a level body that accelerates along x, and turns about z, from `begin_s` on.
+ImuBuffer samples_of(double accel, double begin_s, double rate = 0.0) {
   ImuBuffer imu(0.05);
   for (int i = 0; i <= 2.0 * kRate_hz; ++i) {
     const double t = i / kRate_hz;
-    imu.add(
-        {.t = at(t), .gyro_b = Eigen::Vector3d::Zero(), .accel_b = {t >= begin_s ? accel : 0.0, 0.0, 9.81}});
+    const double moves = t >= begin_s ? 1.0 : 0.0;
+    imu.add({.t = at(t), .gyro_b = {0.0, 0.0, moves * rate}, .accel_b = {moves * accel, 0.0, 9.81}});
   }
   return imu;
 }
@@ -49,13 +49,13 @@ VisualPose pose_of(double t, double accel, double begin_s) {
 }
 
 /// Whether the data is consistent in all frames of 2 s, if it and vision measure these accelerations from 1 s
-/// on.
-bool stays_consistent(double measured, double seen) {
-  ImuBuffer imu = samples_of(measured, 1.0);
+/// on, and the gyroscope a rate that vision does not see.
+bool stays_consistent(double measured, double seen, double rate = 0.0, bool is_confirmed = false) {
+  ImuBuffer imu = samples_of(measured, 1.0, rate);
   InertialCheck check;
   bool consistent = true;
   for (double t = kFrame_s; t < 1.9; t += kFrame_s)
-    consistent &= check.update(pose_of(t, seen, 1.0), {}, kGravity_w, imu);
+    consistent &= check.update(pose_of(t, seen, 1.0), is_confirmed, {}, kGravity_w, imu);
   return consistent;
 }
 
@@ -191,12 +191,27 @@ TEST(InertialCheck, BlamesVisionForAMotionWithoutAChangeOfTheData) {
   EXPECT_TRUE(stays_consistent(0.0, 8.0));  // a person moves in front of the camera
 }
 
+/// A gyroscope that vibrates explains no error of the accelerometer: on carts, each second person who came
+/// before the camera was followed (occluder:start=4,duration=3,amount=0.8 on corridor: 0.9 m).
+TEST(InertialCheck, BlamesVisionWhileTheOtherSensorVibrates) {
+  EXPECT_TRUE(stays_consistent(0.0, 0.0, 0.08));
+  EXPECT_TRUE(stays_consistent(0.0, 8.0, 0.08));
+  EXPECT_FALSE(stays_consistent(0.0, 0.0, 0.5));
+}
+
+/// After a jump of the clock the data of both sensors is wrong, that of one of them more clearly.
+TEST(InertialCheck, RejectsDataOfBothSensorsIfOldPointsConfirmVision) {
+  EXPECT_FALSE(stays_consistent(0.0, 8.0, 0.08, true));
+  EXPECT_TRUE(stays_consistent(0.0, 8.0, 0.0, true));
+}
+
 TEST(InertialCheck, AcceptsDataAgainAfterSixFramesOfAgreementUnlessItIsHeld) {
   ImuBuffer imu = samples_of(0.0, 1.0);
   InertialCheck check;
   double t = 0.0;
   const auto update = [&](int frames) {
-    for (int i = 0; i < frames; ++i) check.update(pose_of(t += kFrame_s, 0.0, 1.0), {}, kGravity_w, imu);
+    for (int i = 0; i < frames; ++i)
+      check.update(pose_of(t += kFrame_s, 0.0, 1.0), false, {}, kGravity_w, imu);
     return check.is_consistent();
   };
   static_cast<void>(update(5));  // three poses at least 50 ms apart are known from the fifth on
