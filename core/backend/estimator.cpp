@@ -135,9 +135,9 @@ void Estimator::relocalize(const TrackedFrame& frame) {
   monitor_.relocated();
 }
 
-/// Pose at `t` by inertial data alone, with the covariance that the optimization claims. It includes the
-/// drift before the loss of vision, which the map shares: after a long path it is larger than the error by
-/// which the map and this pose differ.
+/// Pose at `t` by inertial data alone, with its covariance relative to the trusted map: the map has the drift
+/// before the loss of vision, too. With the time s since that and the covariance V of the velocity, which
+/// grows meanwhile, that of the position is at most s^2 V.
 std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
   if (window_.empty() || !window().inertial) return std::nullopt;
   const std::optional<WindowCovariance> claim = window_.covariance(false);
@@ -146,7 +146,12 @@ std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
   if (!claim || samples.size() < 2) return std::nullopt;
   Preintegration motion(monitor_.imu_noise(true), newest_.gyro_bias, newest_.accel_bias);
   motion.integrate(samples);
-  return predicted_pose(newest_, claim->newest, motion, window().gravity_w);
+  UncertainPose reckoned = predicted_pose(newest_, claim->newest, motion, window().gravity_w);
+  reckoned.covariance.topRightCorner<3, 3>().setZero();
+  reckoned.covariance.bottomLeftCorner<3, 3>().setZero();
+  reckoned.covariance.topLeftCorner<3, 3>() =
+      std::pow(seconds_between(mapped_at_, t), 2) * claim->newest.velocity();
+  return reckoned;
 }
 
 /// Appends the frame at its predicted pose.
@@ -293,6 +298,7 @@ bool Estimator::update_status(bool located, StatusReason failure) {
                                              .covariance = update_.covariance},
                                             window());
   if (clear) restart(window().gravity_w);
+  if (monitor_.status() == OdometryStatus::kTracking) mapped_at_ = newest_.t;
   return failure == StatusReason::kNone && !clear;
 }
 
