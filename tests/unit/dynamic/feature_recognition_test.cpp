@@ -263,6 +263,18 @@ TEST(FeatureRecognition, MinimumOfStableFeaturesDoesNotChangeTheHistory) {
                LabelClass::kDynamicMotion, LabelReason::kHistory);
 }
 
+/// Behind a person who comes before the camera, the features that fit the prediction best are on the person.
+TEST(FeatureRecognition, KeepsNoMinimumOfFeaturesAtACertainPrediction) {
+  DynamicConfig with_minimum = config();
+  with_minimum.min_stable_features = 1;
+  with_minimum.gate_probability = 0.99;
+  FeatureRecognition recognition{with_minimum};
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
+  const auto labels = recognition.gate(
+      std::vector{ConsistencyResidual{.id = 1, .mean_px = 20.0, .pair_count = 4, .squared_distance = 100.0}});
+  expect_label(labels.at(0), LabelClass::kDynamicMotion, LabelReason::kPredictionResidual);
+}
+
 TEST(FeatureRecognition, RecyclesAfterEnoughFramesWithASmallResidual) {
   DynamicConfig with_frame_count = config();
   with_frame_count.recycle_min_frames = 2;
