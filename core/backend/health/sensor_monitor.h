@@ -119,7 +119,7 @@ class SensorMonitor {
   /// Innovation of the camera pose by vision alone, of the frame at `t`.
   void compare_with_prediction(const Expectation& expected, const UncertainPose& visual, Timestamp t);
   /// By how much old points support the pose T_w_c by vision alone more than the predicted one, see
-  /// `support`. Is it negative, the newer points, by which the pose was found, are on a person who came
+  /// `support`. If they support it less, the newer points, by which it was found, are on a person who came
   /// before the camera.
   [[nodiscard]] double added_support(const Window& window, const Pose& predicted, const Pose& T_w_c);
   void distrust_recent_samples(Window& window);
