@@ -135,9 +135,9 @@ void Estimator::relocalize(const TrackedFrame& frame) {
   monitor_.relocated();
 }
 
-/// Pose at `t` by inertial data alone, with its covariance relative to the trusted map: the map has the drift
-/// before the loss of vision, too. With the time s since that and the covariance V of the velocity, which
-/// grows meanwhile, that of the position is at most s^2 V.
+/// Pose at `t` by inertial data alone. The covariance of its position is relative to the trusted map, which
+/// has the drift of before, too: while vision is lost that of the velocity, V, grows, so that T seconds after
+/// the last update of the map it is at most T^2 V.
 std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
   if (window_.empty() || !window().inertial) return std::nullopt;
   const std::optional<WindowCovariance> claim = window_.covariance(false);
@@ -150,7 +150,7 @@ std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
   reckoned.covariance.topRightCorner<3, 3>().setZero();
   reckoned.covariance.bottomLeftCorner<3, 3>().setZero();
   reckoned.covariance.topLeftCorner<3, 3>() =
-      std::pow(seconds_between(mapped_at_, t), 2) * claim->newest.velocity();
+      std::pow(seconds_between(monitor_.mapped_at(), t), 2) * claim->newest.velocity();
   return reckoned;
 }
 
@@ -190,13 +190,13 @@ void Estimator::preintegrate(WindowFrame& next) {
 /// Vision determines the pose if inertial data is wrong; no label follows from a prediction then.
 void Estimator::label_at_prediction(DynamicLabeler& dynamic) {
   monitor_.check_step(imu_, window_.states());
-  if (window_.has_inertial_prediction()) label(dynamic.labels_at_prediction(window(), predicted_camera()));
+  if (window().has_inertial_prediction()) label(dynamic.labels_at_prediction(window(), predicted_camera()));
 }
 
 /// Camera pose of the newest frame as predicted by inertial data, with its covariance relative to the frame
 /// before, which the optimization claims; absent without reliable data, or if no covariance is known.
 std::optional<UncertainPose> Estimator::predicted_camera() const {
-  if (!window_.has_inertial_prediction() || window().newest() < 1) return std::nullopt;
+  if (!window().has_inertial_prediction() || window().newest() < 1) return std::nullopt;
   const WindowFrame& newest = window().frames.back();
   const WindowFrame& before = window().frames[window().frames.size() - 2];
   if (!newest.from_previous || before.state.t != newest_.t) return std::nullopt;
@@ -298,7 +298,6 @@ bool Estimator::update_status(bool located, StatusReason failure) {
                                              .covariance = update_.covariance},
                                             window());
   if (clear) restart(window().gravity_w);
-  if (monitor_.status() == OdometryStatus::kTracking) mapped_at_ = newest_.t;
   return failure == StatusReason::kNone && !clear;
 }
 

@@ -85,7 +85,6 @@ class Estimator {
   NavState previous_;                                 ///< before it: constant velocity model without an IMU
   NavState bridged_;                                  ///< predicted at a repeated image
   std::optional<StateCovariance> newest_covariance_;  ///< of `newest_`, if it was computed
-  Timestamp mapped_at_;                               ///< last update of the trusted map
   OdometryUpdate update_;
 };
 

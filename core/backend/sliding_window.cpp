@@ -100,7 +100,7 @@ void SlidingWindow::choose_keyframe() {
 
 bool SlidingWindow::localize_newest() {
   WindowFrame& newest = window_.frames.back();
-  if (has_inertial_prediction()) return newest.from_previous.has_value();
+  if (window_.has_inertial_prediction()) return newest.from_previous.has_value();
   if (window_.newest() == 0 || !has_metric_scale()) return true;
   Pose prediction = newest.state.T_w_b;
   if (newest.from_previous && newest.imu_is_reliable) {

@@ -49,10 +49,6 @@ class SlidingWindow {
   [[nodiscard]] bool has_metric_scale() const {
     return window_.inertial || config_.depth.usage != DepthUsage::kOff;
   }
-  /// Whether the newest frame was predicted by reliable inertial data.
-  [[nodiscard]] bool has_inertial_prediction() const {
-    return window_.inertial && !window_.frames.empty() && window_.frames.back().imu_is_reliable;
-  }
 
   /// Replaces all states; the noise of the features is the nominal one again.
   void restart(Window fresh);

@@ -114,9 +114,9 @@ const std::vector<DynamicLabel>& FeatureRecognition::gate(std::span<const Consis
     if (fails_gate(residual, config_)) label_as_moving(feature.label, LabelReason::kPredictionResidual);
   });
   collect_labels();
-  const bool is_certain = std::ranges::any_of(
+  const bool has_covariance = std::ranges::any_of(
       residuals, [](const ConsistencyResidual& residual) { return residual.squared_distance.has_value(); });
-  if (!is_certain) labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
+  if (!has_covariance) labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
   return labels_;
 }
 

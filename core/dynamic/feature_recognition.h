@@ -37,9 +37,9 @@ class FeatureRecognition {
                                                           const SemanticMask& mask);
 
   /// Labels features with a residual above 10 px, or outside the gate of `gate_probability`, as
-  /// dynamic. Recycles none: the residuals are computed at the predicted pose. With squared distances the
-  /// prediction is certain, and no minimum of features is kept: behind a person who comes before the camera,
-  /// those that fit best are on the person, and inertial data locates the frame without them.
+  /// dynamic. Recycles none: the residuals are computed at the predicted pose. With squared distances, that
+  /// is, a covariance of the prediction, no minimum of features is kept: behind a person who comes in front
+  /// of the camera those that fit best are on the person, and inertial data locates the frame without them.
   [[nodiscard]] const std::vector<DynamicLabel>& gate(std::span<const ConsistencyResidual> residuals);
 
   /// Labels features with a residual r_k above `mcc_threshold_px` as dynamic. Recycles dynamic features

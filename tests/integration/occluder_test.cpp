@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A person right before the camera whom no box covers, on carts and in a hand that turns, by the default of
-// the program. In each image he is at the same place: vision says that the camera stands, inertial data that
-// it moves.
+// A person directly in front of the camera whom no box covers, on carts and in a hand that turns, by the
+// default of the program. In each image he is at the same place: by vision the camera is at rest, by inertial
+// data it moves.
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct Scene {
   std::string preset;
   int seed;
-  std::vector<int> starts_s;  ///< at which he comes, for 3 s
+  std::vector<int> starts_s;  ///< of the occlusion, which lasts 3 s
 };
 
 fs::path render(const fs::path& folder, const Scene& scene) {
@@ -45,9 +45,9 @@ nlohmann::json ate_m(const fs::path& sequence, const std::string& fault) {
   return nlohmann::json::parse(std::ifstream(out / "result.json"))["ate_rmse_m"];
 }
 
-/// Five of the nine claimed a wrong pose, with errors of 0.4 to 1.9 m: the vibration of the gyroscope was the
-/// reason to believe vision, his points were taken for the map, his depth for that of a changed sensor, and
-/// the least wrong of his points were kept.
+/// Five of the nine had errors of 0.4 to 1.9 m: the vibration of the gyroscope was taken for the reason of
+/// the contradiction, his points for the map, his depth for that of a changed sensor, and his points that
+/// fitted best were kept.
 TEST(Occluder, IsNotFollowed) {
   const TemporaryFolder folder;
   const std::vector<Scene> scenes = {

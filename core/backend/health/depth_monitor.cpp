@@ -18,7 +18,7 @@ constexpr double kMinAgreement_s = 1.0;
 std::optional<double> DepthScale::of_newest(const Window& window) {
   ratios_.clear();
   const Pose T_c_w = window.T_w_c(window.newest()).inverse();
-  const bool is_predicted = window.inertial && window.frames.back().imu_is_reliable;
+  const bool is_predicted = window.has_inertial_prediction();
   for (const Landmark& landmark : window.landmarks) {
     if (!is_usable(landmark) || landmark.last() != window.newest()) continue;
     const Observation& observation = landmark.observations.back();

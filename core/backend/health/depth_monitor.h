@@ -14,8 +14,9 @@ namespace stillpoint {
 /// Compares the depths d_k measured in the newest frame with the depths z_k of the same static landmarks at
 /// its predicted pose, as known from earlier frames. The scale is the median of d_k / (s z_k) with the
 /// estimated depth scale s of the window, if at least 15 landmarks are compared and half of the ratios are
-/// within 2 % of it. If inertial data predicts the pose, landmarks that are not seen where they are expected
-/// are left out: those on a person who walks before the camera would have the scale of their own motion.
+/// within 2 % of it. If inertial data predicts the pose, landmarks that are observed more than 3 px from
+/// their predicted position are left out: a person who stays in front of a moving camera is nearer than
+/// predicted by the same factor everywhere.
 class DepthScale {
  public:
   /// @param focal_px of the camera, > 0

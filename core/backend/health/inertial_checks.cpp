@@ -151,14 +151,18 @@ bool InertialCheck::update(const VisualPose& pose, bool is_confirmed, const NavS
   poses_.push_back(pose);
   if (!error) return consistent_;
   const double accel = error->accel_severity(), gyro = error->gyro_severity();
-  const double severity = std::max(accel, gyro);
-  agreeing_frames_ = severity < kMonitor.inertial.agreeing_severity ? agreeing_frames_ + 1 : 0;
-  if (severity > kMonitor.inertial.min_change_severity) {
-    if (error->accel_is_explained()) accel_changed_at_ = pose.t;
-    if (error->gyro_is_explained()) gyro_changed_at_ = pose.t;
-  }
-  const bool accel_changed = is_recent(accel_changed_at_, pose.t, kMonitor.inertial.after_change_s);
-  const bool gyro_changed = is_recent(gyro_changed_at_, pose.t, kMonitor.inertial.after_change_s);
+  const bool agrees =
+      accel < kMonitor.inertial.agreeing_severity && gyro < kMonitor.inertial.agreeing_severity;
+  agreeing_frames_ = agrees ? agreeing_frames_ + 1 : 0;
+  const auto has_changed = [&](double severity, bool is_explained, std::optional<Timestamp>& changed_at) {
+    if (severity > kMonitor.inertial.min_change_severity && is_explained) changed_at = pose.t;
+    return is_recent(changed_at, pose.t, kMonitor.inertial.after_change_s);
+  };
+  const double larger = std::max(accel, gyro);
+  const bool accel_changed =
+      has_changed(is_confirmed ? larger : accel, error->accel_is_explained(), accel_changed_at_);
+  const bool gyro_changed =
+      has_changed(is_confirmed ? larger : gyro, error->gyro_is_explained(), gyro_changed_at_);
   const bool either = is_confirmed && (accel_changed || gyro_changed);
   if (is_wrong(accel, accel_changed || either, pose.t) || is_wrong(gyro, gyro_changed || either, pose.t))
     consistent_ = false;

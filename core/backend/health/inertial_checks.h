@@ -117,7 +117,7 @@ class InertialCheck {
   std::vector<VisualPose> poses_;  ///< of the last 0.2 s
   std::optional<Timestamp> resume_at_;
   std::optional<Timestamp> missing_at_;
-  std::optional<Timestamp> accel_changed_at_;  ///< by a vector that explained an error
+  std::optional<Timestamp> accel_changed_at_;  ///< last change that explained an error
   std::optional<Timestamp> gyro_changed_at_;   ///< same
   bool held_ = false;
   bool consistent_ = true;

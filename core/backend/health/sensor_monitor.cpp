@@ -28,10 +28,6 @@ bool has_depth(const Landmark& landmark) {
   return !landmark.dynamic && !landmark.observations.empty() && landmark.observations.back().depth > 0.0;
 }
 
-bool has_inertial_prediction(const Window& window) {
-  return window.inertial && !window.frames.empty() && window.frames.back().imu_is_reliable;
-}
-
 MonitorOptions monitor_options(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed) {
   return {.uses_imu = imu.enabled,
           .inlier_threshold = kLocalizationInlier_px / rig.camera.focal_px(),
@@ -68,7 +64,7 @@ bool SensorMonitor::inspect(std::span<const ImuSample> samples, Timestamp end) {
 }
 
 void SensorMonitor::check_step(ImuBuffer& imu, Window& window) {
-  if (!has_inertial_prediction(window) || !window.frames.back().from_previous) return;
+  if (!window.has_inertial_prediction() || !window.frames.back().from_previous) return;
   if (!step_.is_wrong(window, imu)) return;
   inertial_.contradict();
   evidence_.imu_defect = StatusReason::kImuInconsistent;
@@ -139,7 +135,7 @@ void SensorMonitor::check_biases(ImuBuffer& imu, Window& window) {
     inertial_.hold(false);
   }
   if (found.has_step) bias_step_ = biases_.measured();
-  if (!bias_step_ || !has_inertial_prediction(window)) return;
+  if (!bias_step_ || !window.has_inertial_prediction()) return;
   enlarge_bias_walk(*bias_step_, window);
   bias_step_.reset();
 }

@@ -29,6 +29,8 @@ class TrustedMap {
 
   void clear();
   [[nodiscard]] bool empty() const { return newest_.points.empty(); }
+  /// Stamp of the frame whose landmarks it has; only if not empty.
+  [[nodiscard]] Timestamp updated_at() const { return newest_.t; }
 
   /// Camera pose by the features of a frame that are in the map (PnP), with its covariance.
   /// @param prediction    predicted T_w_c
@@ -101,6 +103,8 @@ class TrackingMonitor {
   [[nodiscard]] StatusReason reason() const { return reason_; }
   /// Number of the current world frame.
   [[nodiscard]] int segment() const { return segment_; }
+  /// See `TrustedMap::updated_at`.
+  [[nodiscard]] Timestamp mapped_at() const { return map_.updated_at(); }
   /// The pose of the window is not in the world of the segment: the map has to confirm it.
   [[nodiscard]] bool awaits_map() const { return awaits_map_; }
 

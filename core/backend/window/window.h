@@ -79,6 +79,10 @@ struct Window {
   VectorPool<ImuSample> sample_pool;         ///< of removed preintegrations
 
   [[nodiscard]] bool estimates_gravity() const { return inertial && gravity_covariance.has_value(); }
+  /// Whether the newest frame was predicted by reliable inertial data.
+  [[nodiscard]] bool has_inertial_prediction() const {
+    return inertial && !frames.empty() && frames.back().imu_is_reliable;
+  }
   /// Ends of the preintegration to `frame` >= 1; none if the states are defined there.
   [[nodiscard]] std::optional<std::array<ImuEnd, 2>> imu_ends(int frame) const {
     if (time_offset_model == TimeOffsetModel::kBearing) return std::nullopt;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kDepthFocal_px = 400.0;
 
 Window window_with_depth_factor(double factor) {
-  SimulatedWindowOptions options{.frames = 14, .points = 80};
+  SimulatedWindowOptions options{.frames = 14, .points = 200};
   Window window = simulated_window(options);
   for (Landmark& landmark : window.landmarks) landmark.observations.back().depth *= factor;
   return window;
@@ -30,8 +30,8 @@ TEST(DepthScale, IsRelativeToTheEstimatedOne) {
   EXPECT_NEAR(DepthScale(kDepthFocal_px).of_newest(window).value(), 1.0, 0.01);
 }
 
-/// A person who stays in front of a moving camera: his points are not where they are expected, and all of
-/// them nearer by the same factor. His depth was taken for that of a sensor of another scale.
+/// A person who stays in front of a moving camera is not where he is predicted, and all of his points are
+/// nearer by the same factor. His depth was taken for that of a sensor of another scale.
 TEST(DepthScale, IsNotThatOfAPersonBeforeTheCamera) {
   Window window = window_with_depth_factor(1.0);
   std::size_t k = 0;
@@ -41,8 +41,7 @@ TEST(DepthScale, IsNotThatOfAPersonBeforeTheCamera) {
     observation.bearing.x() += 20.0 / kDepthFocal_px;
     observation.depth *= 0.9;
   }
-  const std::optional<double> scale = DepthScale(kDepthFocal_px).of_newest(window);
-  EXPECT_NEAR(scale.value_or(1.0), 1.0, 0.01);
+  EXPECT_NEAR(DepthScale(kDepthFocal_px).of_newest(window).value(), 1.0, 0.01);
   window.frames.back().imu_is_reliable = false;
   EXPECT_NEAR(DepthScale(kDepthFocal_px).of_newest(window).value(), 0.9, 0.01);
 }

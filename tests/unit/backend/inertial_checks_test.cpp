@@ -191,8 +191,8 @@ TEST(InertialCheck, BlamesVisionForAMotionWithoutAChangeOfTheData) {
   EXPECT_TRUE(stays_consistent(0.0, 8.0));  // a person moves in front of the camera
 }
 
-/// A gyroscope that vibrates explains no error of the accelerometer: on carts, each second person who came
-/// before the camera was followed (occluder:start=4,duration=3,amount=0.8 on corridor: 0.9 m).
+/// A gyroscope that vibrates explains no error of the accelerometer. With that a person in front of a cart
+/// was followed (occluder:start=4,duration=3,amount=0.8 on corridor: 0.9 m).
 TEST(InertialCheck, BlamesVisionWhileTheOtherSensorVibrates) {
   EXPECT_TRUE(stays_consistent(0.0, 0.0, 0.08));
   EXPECT_TRUE(stays_consistent(0.0, 8.0, 0.08));

@@ -263,16 +263,20 @@ TEST(FeatureRecognition, MinimumOfStableFeaturesDoesNotChangeTheHistory) {
                LabelClass::kDynamicMotion, LabelReason::kHistory);
 }
 
-/// Behind a person who comes before the camera, the features that fit the prediction best are on the person.
-TEST(FeatureRecognition, KeepsNoMinimumOfFeaturesAtACertainPrediction) {
+/// Behind a person who comes in front of the camera, the features that fit the prediction best are on the
+/// person.
+TEST(FeatureRecognition, KeepsNoMinimumOfFeaturesAtAPredictionWithCovariance) {
   DynamicConfig with_minimum = config();
   with_minimum.min_stable_features = 1;
   with_minimum.gate_probability = 0.99;
   FeatureRecognition recognition{with_minimum};
   static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
-  const auto labels = recognition.gate(
-      std::vector{ConsistencyResidual{.id = 1, .mean_px = 20.0, .pair_count = 4, .squared_distance = 100.0}});
-  expect_label(labels.at(0), LabelClass::kDynamicMotion, LabelReason::kPredictionResidual);
+  ConsistencyResidual residual{.id = 1, .mean_px = 20.0, .pair_count = 4};
+  expect_label(recognition.gate(std::span(&residual, 1)).at(0), LabelClass::kStable,
+               LabelReason::kMinimumKept);
+  residual.squared_distance = 100.0;
+  expect_label(recognition.gate(std::span(&residual, 1)).at(0), LabelClass::kDynamicMotion,
+               LabelReason::kPredictionResidual);
 }
 
 TEST(FeatureRecognition, RecyclesAfterEnoughFramesWithASmallResidual) {
