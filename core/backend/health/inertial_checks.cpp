@@ -141,8 +141,8 @@ std::optional<InertialError> InertialCheck::error_at(const VisualPose& pose, con
   return inertial_error(independent_poses(poses_[*first], B, pose), state, gravity_w, imu);
 }
 
-bool InertialCheck::update(const VisualPose& pose, bool is_confirmed, const NavState& state,
-                           const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
+bool InertialCheck::update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,
+                           ImuBuffer& imu) {
   if (resume_at_ && pose.t < *resume_at_) return consistent_;
   const std::optional<InertialError> error = error_at(pose, state, gravity_w, imu);
   std::erase_if(poses_, [&](const VisualPose& old) {
@@ -160,10 +160,10 @@ bool InertialCheck::update(const VisualPose& pose, bool is_confirmed, const NavS
   };
   const double larger = std::max(accel, gyro);
   const bool accel_changed =
-      has_changed(is_confirmed ? larger : accel, error->accel_is_explained(), accel_changed_at_);
+      has_changed(pose.is_confirmed ? larger : accel, error->accel_is_explained(), accel_changed_at_);
   const bool gyro_changed =
-      has_changed(is_confirmed ? larger : gyro, error->gyro_is_explained(), gyro_changed_at_);
-  const bool either = is_confirmed && (accel_changed || gyro_changed);
+      has_changed(pose.is_confirmed ? larger : gyro, error->gyro_is_explained(), gyro_changed_at_);
+  const bool either = pose.is_confirmed && (accel_changed || gyro_changed);
   if (is_wrong(accel, accel_changed || either, pose.t) || is_wrong(gyro, gyro_changed || either, pose.t))
     consistent_ = false;
   if (agreeing_frames_ >= kMonitor.inertial.agreeing_frames && !held_) consistent_ = true;

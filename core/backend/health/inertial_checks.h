@@ -82,16 +82,15 @@ struct VisualPoses {
 /// `inertial_error`. The data of a sensor is inconsistent if its severity is above 1 and its change explained
 /// an error in the last 0.3 s, or samples were missing in the last 0.5 s; and consistent again after six
 /// frames with half of that severity of both sensors. Without such a reason vision is wrong, e.g. because it
-/// follows a person in front of the camera. That the data of the other sensor changed is a reason only if old
-/// points confirm vision: a clock that jumps changes both, but gyroscopes also vibrate.
+/// follows a person in front of the camera. That the data of the other sensor changed is a reason only if the
+/// pose is confirmed by old points: a clock that jumps changes both, but gyroscopes also vibrate.
 class InertialCheck {
  public:
   /// @param pose later than the previous one
-  /// @param is_confirmed by old points
   /// @param state biases of the newest state
   /// @return whether the inertial data is consistent; unchanged if samples or earlier poses are missing
-  bool update(const VisualPose& pose, bool is_confirmed, const NavState& state,
-              const Eigen::Vector3d& gravity_w, ImuBuffer& imu);
+  bool update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,
+              ImuBuffer& imu);
 
   /// Vision did not locate the frame at `t` on the IMU clock: the poses before it and those of the next 0.5
   /// s, in which the window settles, are not compared.

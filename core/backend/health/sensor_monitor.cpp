@@ -116,9 +116,9 @@ void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& 
   const Pose T_c_b = window.T_b_c.inverse();
   const VisualPose pose{.t = after(newest.state.t, newest.time_offset_s),
                         .T_w_b = product(T_w_c, T_c_b),
-                        .covariance = in_frame({T_w_c, vision.covariance}, T_c_b).covariance};
-  const bool is_confirmed = confirmation > kMonitor.vision.max_witness_loss;
-  if (inertial_.update(pose, is_confirmed, expected.before, window.gravity_w, imu) || !was_consistent) return;
+                        .covariance = in_frame({T_w_c, vision.covariance}, T_c_b).covariance,
+                        .is_confirmed = confirmation > kMonitor.vision.max_witness_loss};
+  if (inertial_.update(pose, expected.before, window.gravity_w, imu) || !was_consistent) return;
   evidence_.imu_defect = StatusReason::kImuInconsistent;
   distrust_recent_samples(window);
 }

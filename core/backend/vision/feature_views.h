@@ -19,7 +19,8 @@ struct VisualPose {
   /// See `UncertainPose`: of T_w_b, or if the pose was computed from an earlier one, of the motion T_b0_b
   /// since.
   Matrix6 covariance = Matrix6::Zero();
-  int features = 0;  ///< that agree with it
+  int features = 0;           ///< that agree with it
+  bool is_confirmed = false;  ///< points from before agree better with it than with the prediction
 };
 
 /// The features of a frame, and the inertial data before it.

@@ -54,8 +54,11 @@ bool stays_consistent(double measured, double seen, double rate = 0.0, bool is_c
   ImuBuffer imu = samples_of(measured, 1.0, rate);
   InertialCheck check;
   bool consistent = true;
-  for (double t = kFrame_s; t < 1.9; t += kFrame_s)
-    consistent &= check.update(pose_of(t, seen, 1.0), is_confirmed, {}, kGravity_w, imu);
+  for (double t = kFrame_s; t < 1.9; t += kFrame_s) {
+    VisualPose pose = pose_of(t, seen, 1.0);
+    pose.is_confirmed = is_confirmed;
+    consistent &= check.update(pose, {}, kGravity_w, imu);
+  }
   return consistent;
 }
 
@@ -210,8 +213,7 @@ TEST(InertialCheck, AcceptsDataAgainAfterSixFramesOfAgreementUnlessItIsHeld) {
   InertialCheck check;
   double t = 0.0;
   const auto update = [&](int frames) {
-    for (int i = 0; i < frames; ++i)
-      check.update(pose_of(t += kFrame_s, 0.0, 1.0), false, {}, kGravity_w, imu);
+    for (int i = 0; i < frames; ++i) check.update(pose_of(t += kFrame_s, 0.0, 1.0), {}, kGravity_w, imu);
     return check.is_consistent();
   };
   static_cast<void>(update(5));  // three poses at least 50 ms apart are known from the fifth on
