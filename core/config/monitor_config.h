@@ -11,7 +11,7 @@ namespace stillpoint {
 
 /// A camera pose by features whose positions are known.
 struct VisionLimits {
-  double pose_inlier_px = 3.0;    ///< inliers of visual poses that inertial data is compared with
+  double pose_inlier_px = 3.0;    ///< inliers of visual poses that inertial data is compared with; DepthScale
   double inlier_sigmas = 5.0;     ///< largest error of an inlier, in standard deviations of a bearing
   double min_depth_m = 0.05;      ///< nearer points are not used
   int min_inliers = 8;            ///< a frame is located by at least as many
@@ -24,7 +24,7 @@ struct VisionLimits {
   double min_known_ratio = 0.25;           ///< same: features of known position among the tracked ones
   double min_witness_age_s = 0.2;          ///< of points that decide between such a pose and the prediction
   double witness_inlier_px = 1.0;          ///< see `support`
-  double max_witness_loss = 3.0;           ///< of support, from the prediction to such a pose
+  double max_witness_loss = 3.0;           ///< of support by such a pose; as much gain confirms it
 };
 
 /// Errors of inertial data between three visual poses, see InertialError.
