@@ -132,6 +132,9 @@ void Estimator::relocalize(const TrackedFrame& frame) {
   newest_.T_w_b = found.T_w_f;
   newest_.t = frame.t;
   previous_ = newest_;
+  const UncertainPose& mapped = monitor_.map().T_w_b();
+  origin_ = in_frame(mapped, mapped.T_w_f.inverse() * found.T_w_f);
+  origin_.covariance += found.covariance;
   monitor_.relocated();
 }
 
@@ -150,7 +153,7 @@ std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
   reckoned.covariance.topRightCorner<3, 3>().setZero();
   reckoned.covariance.bottomLeftCorner<3, 3>().setZero();
   reckoned.covariance.topLeftCorner<3, 3>() =
-      std::pow(seconds_between(monitor_.mapped_at(), t), 2) * claim->newest.velocity();
+      std::pow(seconds_between(monitor_.map().updated_at(), t), 2) * claim->newest.velocity();
   return reckoned;
 }
 
@@ -248,6 +251,7 @@ void Estimator::solve() {
   update_.counters.solver_iterations = solution.report.iterations;
   if (!solution.covariance) return;
   update_.covariance = solution.covariance->newest;
+  add_origin(origin_, window().frames.back().state, window().gravity_w, *update_.covariance);
   monitor_.add_contradiction(window().frames.back().state.t, *update_.covariance);
   update_.rig_step = solution.covariance->rig_step;
   calibration_.compare_with_rig(update_.rig_step, *update_.covariance, window_.states());
@@ -292,12 +296,14 @@ void Estimator::discard_newest() {
 
 /// @return false if the window was cleared
 bool Estimator::update_status(bool located, StatusReason failure) {
+  const int segment = monitor_.segment();
   const bool clear = monitor_.update_status({.located = located,
                                              .has_metric_scale = window_.has_metric_scale(),
                                              .failure = failure,
                                              .covariance = update_.covariance},
                                             window());
   if (clear) restart(window().gravity_w);
+  if (monitor_.segment() != segment) origin_.covariance.setZero();
   return failure == StatusReason::kNone && !clear;
 }
 
@@ -332,6 +338,7 @@ void Estimator::restart_with_calibration(const Eigen::Vector3d& gyro_bias) {
   restart(window().gravity_w);
   monitor_.calibration_changed();
   newest_.T_w_b = product(newest_.T_w_b, T_before_after);
+  origin_ = in_frame(origin_, T_before_after);
   newest_.gyro_bias = gyro_bias;
   newest_.accel_bias.setZero();
   previous_ = previous;
@@ -341,10 +348,12 @@ void Estimator::restart_with_calibration(const Eigen::Vector3d& gyro_bias) {
   window_.states().landmarks = std::move(landmarks);
 }
 
-/// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
+/// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved, with the
+/// error of that pose.
 /// @param gravity_w before the solve that failed; an estimated one is kept with its covariance
 void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   window_.restart(WindowStart::restarted(window(), gravity_w, calibration_));
+  if (newest_covariance_) origin_ = {newest_.T_w_b, newest_covariance_->pose()};
   newest_.v_w.setZero();
   previous_ = newest_;
   newest_covariance_.reset();

@@ -85,6 +85,7 @@ class Estimator {
   NavState previous_;                                 ///< before it: constant velocity model without an IMU
   NavState bridged_;                                  ///< predicted at a repeated image
   std::optional<StateCovariance> newest_covariance_;  ///< of `newest_`, if it was computed
+  UncertainPose origin_;                              ///< pose of the body at which the window began
   OdometryUpdate update_;
 };
 

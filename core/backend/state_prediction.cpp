@@ -67,6 +67,20 @@ UncertainPose predicted_pose(const NavState& state, const StateCovariance& claim
   return predicted;
 }
 
+void add_origin(const UncertainPose& origin, const NavState& state, const Eigen::Vector3d& gravity_w,
+                StateCovariance& covariance) {
+  const Eigen::Matrix3d R_o = origin.T_w_f.R();
+  Eigen::Matrix<double, 9, 6> J = Eigen::Matrix<double, 9, 6>::Zero();
+  J.topLeftCorner<3, 3>().setIdentity();
+  J.block<3, 3>(0, 3) = -skew(state.T_w_b.p - origin.T_w_f.p) * R_o;
+  J.block<3, 3>(3, 3) = state.T_w_b.R().transpose() * R_o;
+  if (covariance.inertial) J.block<3, 3>(6, 3) = -skew(state.v_w) * R_o;
+  covariance.state.topLeftCorner<9, 9>() += J * origin.covariance * J.transpose();
+  if (covariance.gravity.isZero(0.0)) return;
+  const Eigen::Matrix<double, 2, 3> J_gravity = gravity_basis(gravity_w).transpose() * R_o;
+  covariance.gravity += J_gravity * origin.covariance.bottomRightCorner<3, 3>() * J_gravity.transpose();
+}
+
 void drop_old_samples(const MotionState& motion, ImuBuffer& imu) {
   if (motion.initialized)
     imu.drop_before(after(motion.newest.t, motion.time_offset_s - kMonitor.bias.history_s));

@@ -48,6 +48,15 @@ struct MotionState {
 [[nodiscard]] UncertainPose predicted_pose(const NavState& state, const StateCovariance& claimed,
                                            const Preintegration& imu, const Eigen::Vector3d& gravity_w);
 
+/// Adds the error of the pose o at which the window of a state began, as the window takes it for exact:
+///
+///   dp = dp_o - [p - p_o]x R_o dtheta_o,    dtheta = R^T R_o dtheta_o,    dv = -[v]x R_o dtheta_o,
+///
+/// and, if gravity is estimated, d = B(g)^T R_o dtheta_o of its direction, see gravity_direction.h.
+/// @param covariance of `state`, given o
+void add_origin(const UncertainPose& origin, const NavState& state, const Eigen::Vector3d& gravity_w,
+                StateCovariance& covariance);
+
 /// Drops IMU samples older than the newest state.
 void drop_old_samples(const MotionState& motion, ImuBuffer& imu);
 

@@ -22,8 +22,8 @@ struct NavState {
 ///
 ///   T_w_b = (p + dp, q Exp(dtheta)),   v_w + dv,   bg + dbg,   ba + dba
 ///
-/// dp and dv in the world frame, dtheta and the biases in the body frame. They are relative to the pose that
-/// fixes the gauge: the first pose of the odometry, or of the part after a reset, is exact.
+/// dp and dv in the world frame, dtheta and the biases in the body frame. They are relative to the first pose
+/// of the segment, which is exact.
 struct StateCovariance {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Matrix15 = Eigen::Matrix<double, 15, 15>;

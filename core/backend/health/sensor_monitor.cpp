@@ -180,7 +180,7 @@ bool SensorMonitor::update_status(const Outcome& outcome, const Window& window) 
   evidence_.has_start = imu_.enabled ? window.inertial : outcome.has_metric_scale;
   evidence_.located = false;
   evidence_.contradiction = biases_.contradiction().holds_at(evidence_.t);
-  if (outcome.covariance) evidence_.sigma_m = largest_sigma(outcome.covariance->position());
+  if (outcome.covariance) evidence_.covariance = outcome.covariance->pose();
   const bool alive = evidence_.failure == StatusReason::kNone;
   if (alive && outcome.located && !window.frames.empty()) assess_newest(window);
   return tracking_.update(evidence_, window);

@@ -40,12 +40,12 @@ class SensorMonitor {
   /// @param bridged a repeated image for which constant velocity gives a pose with its covariance
   void begin_frame(const TrackedFrame& frame, bool bridged);
 
-  /// See `TrackingMonitor::relocalize`, `relocated`, `mapped_at` and `awaits_map`.
+  /// See `TrackingMonitor::relocalize`, `relocated`, `map` and `awaits_map`.
   [[nodiscard]] std::optional<UncertainPose> relocalize(const TrackedFrame& frame, const Pose& T_w_c) {
     return tracking_.relocalize(frame, T_w_c);
   }
   void relocated() { tracking_.relocated(); }
-  [[nodiscard]] Timestamp mapped_at() const { return tracking_.mapped_at(); }
+  [[nodiscard]] const TrustedMap& map() const { return tracking_.map(); }
   [[nodiscard]] bool awaits_map() const { return tracking_.awaits_map(); }
 
   /// Inspects the samples up to a frame, before they enter the window.

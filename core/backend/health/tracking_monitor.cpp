@@ -19,8 +19,9 @@ TrustedMap::TrustedMap() {
   for (Version* version : {&newest_, &candidate_, &earlier_}) version->points.reserve(kReservedPoints);
 }
 
-void TrustedMap::update(const Window& window) {
+void TrustedMap::update(const Window& window, const Matrix6& covariance) {
   newest_.t = window.frames.back().state.t;
+  newest_.T_w_b = {window.frames.back().state.T_w_b, covariance};
   newest_.points.clear();
   for (const Landmark& landmark : window.landmarks) {
     if (is_usable(landmark)) newest_.points.push_back({landmark.id, window.position(landmark)});
@@ -70,6 +71,11 @@ bool is_plausible(const Pose& predicted, const Pose& found, double seconds) {
              kMonitor.tracking.gate_rad + kMonitor.tracking.gate_rate_rad * seconds;
 }
 
+/// Along its least certain direction [m].
+double position_sigma(const FrameEvidence& evidence) {
+  return largest_sigma(evidence.covariance.topLeftCorner<3, 3>());
+}
+
 }  // namespace
 
 std::optional<UncertainPose> TrackingMonitor::relocalize(const TrackedFrame& frame, const Pose& T_w_c) {
@@ -95,7 +101,7 @@ TrackingMonitor::Decision TrackingMonitor::decide_located(const FrameEvidence& e
 }
 
 bool TrackingMonitor::is_too_uncertain(const FrameEvidence& evidence) const {
-  const double grown = std::pow(evidence.sigma_m, 2) - std::pow(located_sigma_m_, 2);
+  const double grown = std::pow(position_sigma(evidence), 2) - std::pow(located_sigma_m_, 2);
   return seconds_between(located_at_, evidence.t) > options_.max_dead_reckoning_s ||
          grown > std::pow(options_.max_dead_reckoning_sigma_m, 2);
 }
@@ -153,10 +159,10 @@ bool TrackingMonitor::update(const FrameEvidence& evidence, const Window& window
   relocated_ = false;
   if (is_located(status_) && reason_ != StatusReason::kRepeatedImage) {
     located_at_ = evidence.t;
-    located_sigma_m_ = evidence.sigma_m;
+    located_sigma_m_ = position_sigma(evidence);
     awaits_map_ = false;
   }
-  if (status_ == kTracking) map_.update(window);
+  if (status_ == kTracking) map_.update(window, evidence.covariance);
   if (diverged) map_.discard_newest();
   const bool too_uncertain = reason_ == StatusReason::kUncertain && !awaits_map_;
   awaits_map_ = awaits_map_ || diverged || too_uncertain;

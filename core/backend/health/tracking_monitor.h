@@ -22,15 +22,18 @@ class TrustedMap {
 
   /// Replaces the map by the usable landmarks of a window whose state is trusted; keeps its version of 0.5 to
   /// 1 s ago.
-  void update(const Window& window);
+  /// @param covariance of the newest pose of the body, see UncertainPose
+  void update(const Window& window, const Matrix6& covariance);
 
   /// The newest version is based on a diverged estimate: returns to the earlier one.
   void discard_newest();
 
   void clear();
   [[nodiscard]] bool empty() const { return newest_.points.empty(); }
-  /// Stamp of the frame whose landmarks it has; only if not empty.
+  /// Stamp of the frame whose landmarks it has, and the pose of the body then, whose error they share; only if
+  /// not empty.
   [[nodiscard]] Timestamp updated_at() const { return newest_.t; }
+  [[nodiscard]] const UncertainPose& T_w_b() const { return newest_.T_w_b; }
 
   /// Camera pose by the features of a frame that are in the map (PnP), with its covariance.
   /// @param prediction    predicted T_w_c
@@ -46,6 +49,7 @@ class TrustedMap {
   };
   struct Version {
     Timestamp t;
+    UncertainPose T_w_b;
     std::vector<Point> points;  ///< sorted by id
   };
 
@@ -64,8 +68,7 @@ struct FrameEvidence {
   bool inertial = false;   ///< same for gravity and velocity alone
   bool located = false;    ///< by vision
   VisionAssessment vision;
-  double sigma_m =
-      0.0;  ///< standard deviation of the position along its least certain direction; 0 = unknown
+  Matrix6 covariance = Matrix6::Zero();  ///< of the pose, see UncertainPose; zero = unknown
   StatusReason imu_defect = StatusReason::kNone;
   bool contradiction = false;  ///< inertial data and vision differ; which of them is wrong is not known
   StatusReason failure = StatusReason::kNone;  ///< the window was cleared because of it
@@ -103,8 +106,7 @@ class TrackingMonitor {
   [[nodiscard]] StatusReason reason() const { return reason_; }
   /// Number of the current world frame.
   [[nodiscard]] int segment() const { return segment_; }
-  /// See `TrustedMap::updated_at`.
-  [[nodiscard]] Timestamp mapped_at() const { return map_.updated_at(); }
+  [[nodiscard]] const TrustedMap& map() const { return map_; }
   /// The pose of the window is not in the world of the segment: the map has to confirm it.
   [[nodiscard]] bool awaits_map() const { return awaits_map_; }
 

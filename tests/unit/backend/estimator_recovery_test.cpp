@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the estimator keeps and what it gives up after failures, on simulated motion: the map of trusted
 // landmarks, biases, prior.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/simulated/faulty_run.h"
@@ -77,6 +79,40 @@ TEST(EstimatorRecovery, ADivergedBiasIsForgotten) {
   EXPECT_GT(resets, 0);
 }
 
+double claimed_sigma_m(const FaultyFrame& frame) {
+  return std::sqrt(frame.update.covariance->position().trace());
+}
+
+/// Of the last frame before and of the first one after a time that claims a covariance and is not dead reckoning.
+struct ClaimsAround {
+  double before_m = 0.0, after_m = 0.0;
+};
+
+ClaimsAround claims_around(const FaultyRun& run, double t) {
+  ClaimsAround claims;
+  for (const FaultyFrame& frame : run.frames) {
+    if (!is_located(frame.update.status) || !frame.update.covariance) continue;
+    if (frame.t < t) claims.before_m = claimed_sigma_m(frame);
+    if (frame.t >= t && claims.after_m == 0.0) claims.after_m = claimed_sigma_m(frame);
+  }
+  return claims;
+}
+
+/// The landmarks of the map have the error of the poses that they were seen from.
+TEST(EstimatorRecovery, APoseOnTheMapClaimsTheErrorOfTheMap) {
+  for (const bool uses_imu : {true, false}) {
+    FaultyScenario scenario;
+    scenario.uses_imu = uses_imu;
+    use_consistent_prior(scenario.backend);
+    scenario.change_frame = blank(kBegin_s, kBegin_s + 5.0, true);
+    const FaultyRun run = run_with_faults(scenario);
+    EXPECT_EQ(run.count(8.9, 9.1, kRelocated), 1);
+    const ClaimsAround claims = claims_around(run, kBegin_s);
+    EXPECT_GT(claims.before_m, 0.002);
+    EXPECT_GE(claims.after_m, claims.before_m) << uses_imu;
+  }
+}
+
 /// Bearings in [begin, end) s become `value`.
 std::function<void(TrackedFrame&)> bearings_of(double value, double begin, double end) {
   return [=](TrackedFrame& frame) {
@@ -100,6 +136,8 @@ TEST(EstimatorRecovery, UnusableSolvesAreALoss) {
   EXPECT_EQ(run.count(5.0, kEnd_s, kTracking), run.count(5.0, kEnd_s, is_finite));
   EXPECT_LT(run.worst_error_m(0.0, kEnd_s), 0.02);
   EXPECT_EQ(run.frames.back().update.segment, 0);
+  const ClaimsAround claims = claims_around(run, 4.2);
+  EXPECT_GE(claims.after_m, claims.before_m);
 }
 
 }  // namespace

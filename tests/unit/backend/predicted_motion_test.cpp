@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Covariance of the motion that inertial data predicts.
+// Covariance of the motion that inertial data predicts, and of a state whose window began at an uncertain
+// pose.
 #include <gtest/gtest.h>
 
 #include "core/backend/factors/gravity_direction.h"
@@ -68,6 +69,45 @@ TEST(PredictedPose, HasTheCovarianceOfGravity) {
     const Matrix6 by_gravity = predicted_pose(state, claimed, imu, kGravity).covariance - exact.covariance;
     EXPECT_TRUE((by_gravity.topLeftCorner<3, 3>().isApprox(moved * moved.transpose(), 1e-2))) << i;
   }
+}
+
+/// Each error of the origin moves the state rigidly, and gravity with it.
+TEST(AddOrigin, IsTheErrorOfARigidMotion) {
+  const NavState state = moving_state();
+  const Pose T_w_o{exp_so3({-0.2, 0.4, 1.1}), {-2.0, 0.5, 1.0}};
+  for (int i = 0; i < 6; ++i) {
+    constexpr double kError = 1e-5;
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i % 3) * kError;
+    const Pose moved_origin = i < 3 ? Pose{T_w_o.q, T_w_o.p + axis} : Pose{T_w_o.q * exp_so3(axis), T_w_o.p};
+    const Pose motion = moved_origin * T_w_o.inverse();
+    const Pose moved = motion * state.T_w_b;
+    Eigen::Matrix<double, 9, 1> error;
+    error << moved.p - state.T_w_b.p, log_so3(state.T_w_b.q.conjugate() * moved.q),
+        motion.q * state.v_w - state.v_w;
+    const Eigen::Vector2d of_gravity = gravity_difference(motion.q * kGravity, kGravity);
+
+    UncertainPose origin{T_w_o};
+    origin.covariance(i, i) = kError * kError;
+    StateCovariance covariance{.inertial = true};
+    covariance.gravity.setIdentity();
+    add_origin(origin, state, kGravity, covariance);
+    const Eigen::Matrix<double, 9, 9> added = covariance.state.topLeftCorner<9, 9>();
+    EXPECT_LT((added - error * error.transpose()).norm(), 1e-2 * error.squaredNorm()) << i;
+    const Eigen::Matrix2d tilt = covariance.gravity - Eigen::Matrix2d::Identity();
+    EXPECT_LT((tilt - of_gravity * of_gravity.transpose()).norm(), 1e-2 * kError * kError) << i;
+  }
+}
+
+TEST(AddOrigin, LeavesThePredictedMotionAsItIs) {
+  const Preintegration imu = tenth_of_a_second({0.001, 0.01, 1e-5, 1e-4});
+  StateCovariance claimed{.inertial = true};
+  claimed.state.diagonal().setConstant(1e-6);
+  const UncertainPose before = predicted_motion(moving_state(), claimed, imu, kGravity);
+  const UncertainPose origin{{exp_so3({-0.2, 0.4, 1.1}), {-2.0, 0.5, 1.0}}, 0.01 * Matrix6::Identity()};
+  add_origin(origin, moving_state(), kGravity, claimed);
+  EXPECT_GT(claimed.position().trace(), 0.03);
+  EXPECT_TRUE(
+      predicted_motion(moving_state(), claimed, imu, kGravity).covariance.isApprox(before.covariance, 1e-9));
 }
 
 }  // namespace

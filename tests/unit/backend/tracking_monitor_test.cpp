@@ -99,9 +99,9 @@ TEST(TrackingMonitor, WithoutVisionInertialDataIsUsedForSixSeconds) {
 TEST(TrackingMonitor, DeadReckoningEndsWhenItsUncertaintyHasGrownByHalfAMeter) {
   MonitoredRun run = tracking_run();
   FrameEvidence evidence = blank_frame();
-  evidence.sigma_m = 0.45;
+  evidence.covariance(0, 0) = 0.45 * 0.45;
   EXPECT_FALSE(run.update(evidence));
-  evidence.sigma_m = 0.55;
+  evidence.covariance(0, 0) = 0.55 * 0.55;
   EXPECT_TRUE(run.update(evidence));
   run.expect(kLost, StatusReason::kUncertain);
 }
@@ -183,7 +183,7 @@ TrackedFrame frame_of(const Window& window, int count) {
 TEST(TrustedMap, LocatesTheCameraByTwelveFeaturesOrMore) {
   const Window window = visual_window(3, 40);
   TrustedMap map;
-  map.update(window);
+  map.update(window, Matrix6::Zero());
   const Pose predicted = window.T_w_c(1);
   for (const int count : {11, 12}) {
     const auto found = map.locate(frame_of(window, count), predicted, {.inlier_threshold = 0.01}, 0.003);
@@ -197,7 +197,7 @@ TEST(TrustedMap, LocatesTheCameraByTwelveFeaturesOrMore) {
 TEST(TrustedMap, HalfOfTheFeaturesMustAgree) {
   const Window window = visual_window(3, 40);
   TrustedMap map;
-  map.update(window);
+  map.update(window, Matrix6::Zero());
   for (const int moved : {16, 24}) {
     TrackedFrame frame = frame_of(window, 40);
     for (int i = 0; i < moved; ++i)
@@ -213,11 +213,11 @@ TEST(TrustedMap, ReturnsToAVersionFromBeforeADivergence) {
   const TrackedFrame frame = frame_of(window, 40);
   for (const double t : {0.2, 0.8}) {
     window.frames.back().state.t = after({}, t);
-    map.update(window);
+    map.update(window, Matrix6::Zero());
   }
   for (WindowFrame& moved : window.frames) moved.state.T_w_b.p.x() += 3.0;
   window.frames.back().state.t = after({}, 1.0);
-  map.update(window);
+  map.update(window, Matrix6::Zero());
   map.discard_newest();
   const auto found = map.locate(frame, truth, {.inlier_threshold = 0.01}, 0.003);
   ASSERT_TRUE(found);
