@@ -83,7 +83,7 @@ double claimed_sigma_m(const FaultyFrame& frame) {
   return std::sqrt(frame.update.covariance->position().trace());
 }
 
-/// Of the last frame before and of the first one after a time that claims a covariance and is not dead reckoning.
+/// Of the last located frame before a time and of the first one after it that claim a covariance.
 struct ClaimsAround {
   double before_m = 0.0, after_m = 0.0;
 };
