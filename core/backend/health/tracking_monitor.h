@@ -30,8 +30,8 @@ class TrustedMap {
 
   void clear();
   [[nodiscard]] bool empty() const { return newest_.points.empty(); }
-  /// Stamp of the frame whose landmarks it has, and the pose of the body then, whose error they share; only if
-  /// not empty.
+  /// Stamp of the frame whose landmarks it has, and the pose of the body then, whose error they share; only
+  /// if not empty.
   [[nodiscard]] Timestamp updated_at() const { return newest_.t; }
   [[nodiscard]] const UncertainPose& T_w_b() const { return newest_.T_w_b; }
 
