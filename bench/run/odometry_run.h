@@ -115,7 +115,7 @@ struct EstimatedCalibration {
   /// Whether the data agrees with the rig, so that the value is that of the rig; absent if it is not compared
   /// (`backend.calibration_agreement_probability`).
   std::optional<bool> extrinsics_agree, depth_scale_agrees, lens_agrees;
-  RigStep rig_step;                                 ///< what the last solve asked for where it agrees
+  RigStep rig_step;                                 ///< see `OdometryUpdate`
   std::optional<AlignedRotation> aligned_rotation;  ///< at the start
   int time_offset_at_bound = 0;                     ///< number of frames in which the value was at its bound
   int extrinsics_at_bound = 0;                      ///< same

@@ -46,7 +46,7 @@ RigFinding finding_of(const Estimate& estimate, bool agrees) {
 void add_lens(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
   if (!calibration.lens_agrees || !calibration.lens_sigma || calibration.lens_sigma->isZero(0.0)) return;
   const bool agrees = *calibration.lens_agrees;
-  const Eigen::Vector4d difference = -(agrees ? calibration.rig_step.lens : calibration.lens);
+  const Eigen::Vector4d difference = -(calibration.lens + calibration.rig_step.lens);
   const Camera& camera = calibration.rig.camera;
   const auto add = [&](std::string name, int i, double unit, double observed) {
     const double sigma = (*calibration.lens_sigma)[i];
@@ -64,7 +64,7 @@ void add_lens(const EstimatedCalibration& calibration, std::vector<RigFinding>& 
 void add_depth_scale(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
   if (!calibration.depth_scale_agrees || !calibration.depth_scale_sigma) return;
   const bool agrees = *calibration.depth_scale_agrees;
-  const double difference = agrees ? -calibration.rig_step.depth_scale : calibration.depth_scale - 1.0;
+  const double difference = calibration.depth_scale - 1.0 - calibration.rig_step.depth_scale;
   const double sigma = *calibration.depth_scale_sigma;
   findings.push_back(finding_of({"depth scale [%]", 100.0 * difference, 100.0 * sigma,
                                  deviations(difference, sigma, rig_tolerance::kDepthScale), 5.0},

@@ -231,8 +231,7 @@ std::optional<WindowCovariance> CeresSolver::covariance(const Window& window, co
   WindowCovariance result{.newest = state_covariance(blocks, inverse_blocks(blocks))};
   const Eigen::VectorXd step = -inverse * equations.b(columns);
   result.rig_step =
-      rig_step(window.agrees_with_rig, blocks,
-               step.head(static_cast<Eigen::Index>(columns_of(blocks, equations.layout).size())));
+      rig_step(blocks, step.head(static_cast<Eigen::Index>(columns_of(blocks, equations.layout).size())));
   if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
   return result;
 }

@@ -313,13 +313,11 @@ std::optional<WindowCovariance> SchurSolver::covariance(const Window& window, co
   const NewestMatrix newest = inverse_blocks(prior_blocks_);
   if (!newest.allFinite()) return std::nullopt;
   WindowCovariance result{.newest = state_covariance(prior_blocks_, newest)};
-  if (window.agrees_with_rig.any()) {
-    skyline_solve(system_.first, S_, newton_.states);
-    NewestVector step(static_cast<Eigen::Index>(columns_.size()));  // a view by columns_ would copy them
-    for (std::size_t i = 0; i < columns_.size(); ++i)
-      step[static_cast<Eigen::Index>(i)] = newton_.states[columns_[i]];
-    result.rig_step = rig_step(window.agrees_with_rig, prior_blocks_, step);
-  }
+  skyline_solve(system_.first, S_, newton_.states);
+  NewestVector step(static_cast<Eigen::Index>(columns_.size()));  // a view by columns_ would copy them
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    step[static_cast<Eigen::Index>(i)] = newton_.states[columns_[i]];
+  result.rig_step = rig_step(prior_blocks_, step);
   if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
   return result;
 }

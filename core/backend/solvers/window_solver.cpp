@@ -75,14 +75,13 @@ StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestM
   return result;
 }
 
-RigStep rig_step(const AgreesWithRig& constant, std::span<const BlockRef> blocks, const NewestVector& step) {
+RigStep rig_step(std::span<const BlockRef> blocks, const NewestVector& step) {
   RigStep result;
   int column = 0;
   for (const BlockRef block : blocks) {
-    if (block.kind == BlockKind::kExtrinsics && constant.extrinsics)
-      result.extrinsics = step.segment<6>(column);
-    if (block.kind == BlockKind::kDepthScale && constant.depth_scale) result.depth_scale = step[column];
-    if (block.kind == BlockKind::kLens && constant.lens) result.lens = step.segment<4>(column);
+    if (block.kind == BlockKind::kExtrinsics) result.extrinsics = step.segment<6>(column);
+    if (block.kind == BlockKind::kDepthScale) result.depth_scale = step[column];
+    if (block.kind == BlockKind::kLens) result.lens = step.segment<4>(column);
     column += local_size(block.kind);
   }
   return result;

@@ -106,9 +106,8 @@ using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 29, 1>;
 
 /// @param blocks as in `state_covariance`
-/// @param step Gauss-Newton step of the blocks, if all of them were variable
-[[nodiscard]] RigStep rig_step(const AgreesWithRig& constant, std::span<const BlockRef> blocks,
-                               const NewestVector& step);
+/// @param step Gauss-Newton step of the blocks, all of them variable
+[[nodiscard]] RigStep rig_step(std::span<const BlockRef> blocks, const NewestVector& step);
 
 inline constexpr std::array<BlockRef, 2> kOldestPoses = {BlockRef{BlockKind::kPose, 0},
                                                          BlockRef{BlockKind::kPose, 1}};

@@ -128,12 +128,13 @@ double Calibration::depth_scale_contradiction(double difference, double variance
          (variance * (1.0 + early * early) + rig_tolerance::kDepthScale * rig_tolerance::kDepthScale);
 }
 
-/// d^T (C + S)^-1 d with S what a calibration is good to. Until rotations are aligned, a camera that is
+/// d^T (C + S)^-1 d with d the difference of the converged estimate from the rig and S what a calibration is
+/// good to. Until rotations are aligned, a camera that is
 /// turned on the body looks like one with another center.
 void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance,
                                Window& window) {
   bool& agrees = window.agrees_with_rig.lens;
-  const Eigen::Vector4d difference = agrees ? step : window.lens;
+  const Eigen::Vector4d difference = window.lens + step;
   Eigen::Matrix4d tolerated = covariance;
   tolerated.diagonal() += Eigen::Vector4d::Map(rig_tolerance::kLens.data()).cwiseAbs2();
   if (awaits_alignment())
@@ -158,7 +159,7 @@ void Calibration::compare_with_rig(const RigStep& step, const StateCovariance& c
   const double depth_scale_variance = covariance.depth_scale;
   if (compares_lens() && covariance.lens(0, 0) > 0.0) compare_lens(step.lens, covariance.lens, window);
   if (compares_depth_scale() && depth_scale_variance > 0.0) {
-    const double difference = agrees.depth_scale ? step.depth_scale : 1.0 / window.depth_scale - 1.0;
+    const double difference = 1.0 / window.depth_scale - 1.0 + step.depth_scale;
     const double contradiction =
         depth_scale_contradiction(difference, depth_scale_variance, window.frames.back().state.t);
     agrees.depth_scale = contradiction < (agrees.depth_scale ? kOtherScale : kLikeRig);

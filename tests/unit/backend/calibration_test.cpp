@@ -82,6 +82,28 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   EXPECT_EQ(window.depth_scale, 1.0);
 }
 
+/// One solve of four iterations moves a scale by a tenth of its difference.
+TEST(Calibration, AScaleThatHasNotConvergedStillDiffersFromTheRig) {
+  Calibration calibration(estimating_config(), true, {});
+  Window window = calibration.calibrated_window();
+  window.frames.emplace_back();
+  StateCovariance covariance;
+  covariance.depth_scale = 1e-4;
+  const auto compare_at = [&](double seconds, double step) {
+    window.frames.back().state.t = after({}, seconds);
+    calibration.compare_with_rig({.depth_scale = step}, covariance, window);
+  };
+  compare_at(0.0, 0.0);
+  compare_at(5.0, 0.1);
+  EXPECT_FALSE(window.agrees_with_rig.depth_scale);
+  window.depth_scale = 0.99;
+  compare_at(5.03, 0.09);
+  EXPECT_FALSE(window.agrees_with_rig.depth_scale);
+  EXPECT_EQ(window.depth_scale, 0.99);
+  compare_at(5.07, 0.0);
+  EXPECT_TRUE(window.agrees_with_rig.depth_scale);
+}
+
 TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   BackendConfig config = estimating_config();
   config.estimate_lens = true;
