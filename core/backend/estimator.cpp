@@ -14,6 +14,9 @@ namespace {
 /// 99 % quantile of the chi-square distribution with six degrees of freedom.
 constexpr double kMaxPoseDistance = 16.81;
 
+/// Most solves for the convergence of calibration that contradicts the rig.
+constexpr int kCalibrationSolves = 15;
+
 /// Acceleration of a camera in the hand.
 constexpr double kAcceleration = 2.0;         // [m/s^2]
 constexpr double kAngularAcceleration = 5.0;  // [rad/s^2]
@@ -244,6 +247,25 @@ void Estimator::check_data() {
 
 void Estimator::solve() {
   const ScopedTimer timer(update_.timings, Module::kWindowSolve);
+  const AgreesWithRig before = window().agrees_with_rig;
+  optimize();
+  converge_calibration(before);
+}
+
+/// A solve moves a depth scale or lens that was constant before by a part of its difference only.
+void Estimator::converge_calibration(const AgreesWithRig& before) {
+  const AgreesWithRig& now = window().agrees_with_rig;
+  const auto is_found = [&] {
+    return (before.depth_scale && !now.depth_scale) || (before.lens && !now.lens);
+  };
+  for (int i = 0; i < kCalibrationSolves && update_.covariance && is_found(); ++i) {
+    if (has_converged(now, update_.rig_step, *update_.covariance)) break;
+    optimize();
+  }
+  calibration_found_ = is_found();
+}
+
+void Estimator::optimize() {
   const SlidingWindow::Solution solution = window_.solve(calibration_);
   update_.at_bound = solution.at_bound;
   update_.counters.window_landmarks = solution.report.landmarks;
@@ -314,14 +336,16 @@ void Estimator::slide() {
   window_.slide();
 }
 
-/// With a wrong rotation, the states of the window are far from the true ones, and its prior is linearized at
-/// the wrong point: it starts anew, for which vision is needed.
+/// With a wrong calibration, the states of the window are far from the true ones, and its prior is
+/// linearized at the wrong point: it starts anew, for which vision is needed.
 void Estimator::free_calibration(Timestamp now) {
+  const bool found = std::exchange(calibration_found_, false);
   if (monitor_.status() == OdometryStatus::kDeadReckoning) return;
   if (calibration_.awaits_alignment()) {
     const std::optional<RotationAlignment> alignment = start_.align_rotations(window(), now, imu_);
-    if (alignment && calibration_.align(*alignment)) restart_with_calibration(alignment->gyro_bias);
+    if (alignment && calibration_.align(*alignment)) return restart_with_calibration(alignment->gyro_bias);
   }
+  if (found) restart_with_calibration(newest_.gyro_bias);
 }
 
 /// With the newest frame, at the same pose of its camera. Gravity and biases were estimated with the

@@ -65,6 +65,8 @@ class Estimator {
   // Parts of `refine`.
   void check_data();
   void solve();
+  void optimize();
+  void converge_calibration(const AgreesWithRig& before);
   [[nodiscard]] bool accept_or_reset(const Eigen::Vector3d& gravity_before);
   void discard_newest();
   [[nodiscard]] bool update_status(bool located, StatusReason failure);
@@ -85,6 +87,7 @@ class Estimator {
   NavState previous_;                                 ///< before it: constant velocity model without an IMU
   NavState bridged_;                                  ///< predicted at a repeated image
   std::optional<StateCovariance> newest_covariance_;  ///< of `newest_`, if it was computed
+  bool calibration_found_ = false;                    ///< by the last solve: the window starts anew with it
   UncertainPose origin_;                              ///< pose of the body at which the window began
   OdometryUpdate update_;
 };

@@ -80,10 +80,10 @@ struct AgreesWithRig {
   [[nodiscard]] bool any() const { return extrinsics || depth_scale || lens; }
 };
 
-/// The Gauss-Newton step d of the calibration after a solve: what the residuals say about calibration that was
-/// constant in it (AgreesWithRig), and how far other calibration is from convergence. With the covariance C
-/// of a constant one, d^T C^-1 d is chi-square distributed if the values of the rig are true (score test, Rao
-/// 1948).
+/// The Gauss-Newton step d of the calibration after a solve: what the residuals say about calibration that
+/// was constant in it (AgreesWithRig), and how far other calibration is from convergence. With the covariance
+/// C of a constant one, d^T C^-1 d is chi-square distributed if the values of the rig are true (score test,
+/// Rao 1948).
 struct RigStep {
   Eigen::Matrix<double, 6, 1> extrinsics = Eigen::Matrix<double, 6, 1>::Zero();
   double depth_scale = 0.0;  ///< of its inverse

@@ -62,10 +62,12 @@ Window Calibration::calibrated_window() const {
   window.T_b_c = rig_.T_b_c;
   window.time_offset_s = rig_.time_offset_s;
   window.time_offset_model = config_.time_offset_model;
-  window.agrees_with_rig = {.extrinsics = starts_with_rig() && config_.estimate_extrinsics,
-                            .depth_scale = compares_depth_scale() && !depth_scale_found_,
-                            .lens = compares_lens() && !lens_found_};
-  if (lens_found_) window.lens = *lens_found_;
+  window.agrees_with_rig = {
+      .extrinsics = starts_with_rig() && config_.estimate_extrinsics && !extrinsics_found_,
+      .depth_scale = compares_depth_scale() && !depth_scale_found_,
+      .lens = compares_lens() && !lens_found_};
+  if (extrinsics_found_) window.T_b_c = *extrinsics_found_;
+  if (lens_found_) window.lens = lens_found_->value;
   if (depth_scale_found_) window.depth_scale = depth_scale_found_->value;
   if (time_offset_found_s_) window.time_offset_s = *time_offset_found_s_;
   if (!is_aligned_otherwise()) return window;
@@ -81,8 +83,13 @@ LinearPrior Calibration::prior() const {
   BackendConfig config = config_;
   if (depth_scale_found_)
     config.depth.scale_sigma = std::min(config.depth.scale_sigma, depth_scale_found_->sigma);
-  if (!is_aligned_otherwise()) return calibration_prior(window, config);
-  return aligned_calibration_prior(window, config, rotation_alignment_->covariance);
+  LinearPrior prior = is_aligned_otherwise()
+                          ? aligned_calibration_prior(window, config, rotation_alignment_->covariance)
+                          : calibration_prior(window, config);
+  if (lens_found_)
+    prior.jacobian.bottomRightCorner<4, 4>() =
+        lens_found_->covariance.llt().matrixL().solve(Eigen::Matrix4d::Identity());
+  return prior;
 }
 
 bool Calibration::awaits_alignment() const {
@@ -99,6 +106,7 @@ bool Calibration::align(const RotationAlignment& alignment) {
     if (!is_aligned_otherwise()) return false;
   }
   compared_since_.reset();
+  extrinsics_found_.reset();
   depth_scale_found_.reset();  // with the rotation and the time offset of the rig
   lens_found_.reset();
   return true;
@@ -143,15 +151,17 @@ void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4
   agrees = contradiction < (agrees ? kOtherLens : kLikeRig);
   if (agrees) set_lens(Eigen::Vector4d::Zero(), window);
   lens_found_.reset();
-  if (!agrees) lens_found_ = window.lens;
+  if (!agrees) lens_found_ = {window.lens, covariance};
 }
 
-void Calibration::compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) const {
+void Calibration::compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) {
   Matrix6 tolerated = covariance;
   tolerated.diagonal().head<3>().array() += rig_tolerance::kLever_m * rig_tolerance::kLever_m;
   tolerated.diagonal().tail<3>().array() += rig_tolerance::kRotation_rad * rig_tolerance::kRotation_rad;
   const double contradiction = step.dot(tolerated.llt().solve(step));
   window.agrees_with_rig.extrinsics &= agrees_with_rig(contradiction, local_size(BlockKind::kExtrinsics));
+  extrinsics_found_.reset();
+  if (!window.agrees_with_rig.extrinsics) extrinsics_found_ = window.T_b_c;
 }
 
 void Calibration::compare_with_rig(const RigStep& step, const StateCovariance& covariance, Window& window) {
@@ -172,6 +182,15 @@ void Calibration::compare_with_rig(const RigStep& step, const StateCovariance& c
 
 CalibrationAtBound Calibration::limit(Window& window) const {
   return limit_calibration(rig_, config_, window);
+}
+
+bool has_converged(const AgreesWithRig& constant, const RigStep& step, const StateCovariance& covariance) {
+  constexpr double kSmall = 0.25 * 0.25;
+  const bool has_scale =
+      constant.depth_scale || step.depth_scale * step.depth_scale <= kSmall * covariance.depth_scale;
+  const bool has_lens =
+      constant.lens || (step.lens.cwiseAbs2().array() <= kSmall * covariance.lens.diagonal().array()).all();
+  return has_scale && has_lens;
 }
 
 void average_imu_at_exposure(const ImuBuffer& imu, WindowFrame& frame) {

@@ -16,9 +16,9 @@ namespace stillpoint {
 /// The calibration that a window starts with, and whether it is that of the rig. Estimated extrinsics,
 /// depth scale and lens have the values of the rig until the data contradicts those with
 /// `calibration_agreement_probability`, or 99 % of depth scale and lens. Then a window starts with what was
-/// found so far: rotation and time offset by a RotationAlignment, depth scale and lens by the window before.
-/// The lever arm is estimated by the window itself. Extrinsics that the configuration keeps constant become
-/// variable, too, when a certain alignment contradicts them.
+/// found so far: rotation and time offset by a RotationAlignment, extrinsics, depth scale and lens by the
+/// window before. Extrinsics that the configuration keeps constant become variable, too, when a certain
+/// alignment contradicts them.
 class Calibration {
  public:
   Calibration(const BackendConfig& config, bool uses_imu, const Rig& rig);
@@ -26,8 +26,9 @@ class Calibration {
   /// Without frames, with the calibration that `prior` is about.
   [[nodiscard]] Window calibrated_window() const;
 
-  /// About the rig. A depth scale that was found is known by the residuals of windows that are given up, and
-  /// rotation and time offset, if they contradict the rig, by the rotations that they were aligned with.
+  /// About the rig. A depth scale or lens that was found is known by the residuals of windows that are given
+  /// up, and rotation and time offset, if they contradict the rig, by the rotations that they were aligned
+  /// with.
   [[nodiscard]] LinearPrior prior() const;
 
   /// Whether rotation and time offset are to be aligned at the start, and are not yet. The features need
@@ -43,8 +44,9 @@ class Calibration {
 
   /// Compares the rig with the residuals of the last solve.
   ///
-  /// The inverse depth scale k differs from 1 by d, the step of the score test while it is constant. With its
-  /// variance C, s_a the scale error of the accelerometer, and t the time since the first comparison,
+  /// The inverse depth scale k differs from 1 by d, that of its value and of the Gauss-Newton step that is
+  /// left: while k is constant, the step of the score test. With its variance C, s_a the scale error of the
+  /// accelerometer, and t the time since the first comparison,
   ///
   ///   d^2 / (C (1 + (t_n / t)^2) + s_a^2)
   ///
@@ -70,6 +72,10 @@ class Calibration {
     double value = 1.0;  ///< ratio of measured to true depth
     double sigma = 0.0;  ///< standard deviation of its inverse
   };
+  struct LensEstimate {
+    Eigen::Vector4d value;
+    Eigen::Matrix4d covariance;
+  };
 
   [[nodiscard]] bool starts_with_rig() const {
     return uses_imu_ && config_.calibration_agreement_probability > 0.0;
@@ -78,7 +84,7 @@ class Calibration {
   [[nodiscard]] bool compares_depth_scale() const {
     return starts_with_rig() && config_.depth.estimate_scale;
   }
-  void compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) const;
+  void compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window);
   void compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance, Window& window);
   [[nodiscard]] double depth_scale_contradiction(double difference, double variance, Timestamp now);
   [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
@@ -91,9 +97,16 @@ class Calibration {
   std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
   std::optional<double> time_offset_found_s_;            ///< before the rotation, and contradicts the rig
   std::optional<Timestamp> compared_since_;              ///< depth scales
-  std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
-  std::optional<Eigen::Vector4d> lens_found_;            ///< same
+  std::optional<Pose> extrinsics_found_;                 ///< contradict the rig
+  std::optional<DepthScaleEstimate> depth_scale_found_;  ///< same
+  std::optional<LensEstimate> lens_found_;               ///< same
 };
+
+/// Whether no step of depth scale and lens exceeds a quarter of its standard deviation.
+/// @param constant calibration that does not have to converge
+/// @param covariance of the state of the last solve, as `step`
+[[nodiscard]] bool has_converged(const AgreesWithRig& constant, const RigStep& step,
+                                 const StateCovariance& covariance);
 
 /// Sets what the IMU measures at the exposure of a frame to means over up to 40 ms around it, if there are
 /// samples on both sides. Image velocities and the inertial residual's derivative by the time offset are

@@ -76,8 +76,12 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   step.extrinsics[4] *= 1.4;
   calibration.compare_with_rig(step, covariance, compared);
   EXPECT_FALSE(agrees.extrinsics);
+  EXPECT_EQ(compared.T_b_c.p, rig.T_b_c.p);
+  compared.T_b_c.p.x() = 0.12;
+  calibration.compare_with_rig({}, covariance, compared);
   const Window window = calibration.calibrated_window();
-  EXPECT_EQ(window.T_b_c.p, rig.T_b_c.p);
+  EXPECT_FALSE(window.agrees_with_rig.extrinsics);
+  EXPECT_EQ(window.T_b_c.p.x(), 0.12);
   EXPECT_EQ(window.time_offset_s, rig.time_offset_s);
   EXPECT_EQ(window.depth_scale, 1.0);
 }
@@ -119,6 +123,8 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   window.lens = {0.02, -0.04, 0.0, 0.01};
   calibration.compare_with_rig({}, covariance, window);
   EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d(0.02, -0.04, 0.0, 0.01));
+  const Eigen::Matrix4d root = calibration.prior().jacobian.bottomRightCorner<4, 4>();
+  EXPECT_TRUE((root.transpose() * root).isApprox(1e6 * Eigen::Matrix4d::Identity()));
   window.lens = {0.001, 0.001, 0.0, 0.0};
   calibration.compare_with_rig({}, covariance, window);
   EXPECT_TRUE(window.agrees_with_rig.lens);

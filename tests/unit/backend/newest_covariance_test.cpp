@@ -180,7 +180,7 @@ TEST(RigStep, IsTwiceTheCostOfTheValuesOfTheRig) {
   const double variable = schur.solve(window, options.config, kSimulatedFocal_px).final_cost;
   EXPECT_NE(window.depth_scale, 1.0);
   EXPECT_NEAR(by_schur, 2.0 * (constant - variable), 0.1 * by_schur);
-  EXPECT_EQ(contradiction(schur), 0.0);
+  EXPECT_LT(contradiction(schur), 1e-6);  // converged
 }
 
 TEST(NewestCovariance, WithThePublishedPriorAndConstantDepths) {
