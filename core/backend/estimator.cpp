@@ -258,11 +258,11 @@ void Estimator::converge_calibration(const AgreesWithRig& before) {
   const auto is_found = [&] {
     return (before.depth_scale && !now.depth_scale) || (before.lens && !now.lens);
   };
-  for (int i = 0; i < kCalibrationSolves && update_.covariance && is_found(); ++i) {
+  for (int i = 0; i < kCalibrationSolves && is_found() && window_.unusable_solves() == 0; ++i) {
     if (has_converged(now, update_.rig_step, *update_.covariance)) break;
     optimize();
   }
-  calibration_found_ = is_found();
+  if (is_found()) calibration_found_ = true;
 }
 
 void Estimator::optimize() {
@@ -337,15 +337,14 @@ void Estimator::slide() {
 }
 
 /// With a wrong calibration, the states of the window are far from the true ones, and its prior is
-/// linearized at the wrong point: it starts anew, for which vision is needed.
+/// linearized at the wrong point: it starts anew, for which vision and measured depth are needed.
 void Estimator::free_calibration(Timestamp now) {
-  const bool found = std::exchange(calibration_found_, false);
   if (monitor_.status() == OdometryStatus::kDeadReckoning) return;
   if (calibration_.awaits_alignment()) {
     const std::optional<RotationAlignment> alignment = start_.align_rotations(window(), now, imu_);
     if (alignment && calibration_.align(*alignment)) return restart_with_calibration(alignment->gyro_bias);
   }
-  if (found) restart_with_calibration(newest_.gyro_bias);
+  if (calibration_found_ && monitor_.can_restart(window())) restart_with_calibration(newest_.gyro_bias);
 }
 
 /// With the newest frame, at the same pose of its camera. Gravity and biases were estimated with the
@@ -381,6 +380,7 @@ void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   newest_.v_w.setZero();
   previous_ = newest_;
   newest_covariance_.reset();
+  calibration_found_ = false;
   monitor_.window_restarted();
 }
 

@@ -87,7 +87,7 @@ class Estimator {
   NavState previous_;                                 ///< before it: constant velocity model without an IMU
   NavState bridged_;                                  ///< predicted at a repeated image
   std::optional<StateCovariance> newest_covariance_;  ///< of `newest_`, if it was computed
-  bool calibration_found_ = false;                    ///< by the last solve: the window starts anew with it
+  bool calibration_found_ = false;                    ///< in this window, which has to start anew with it
   UncertainPose origin_;                              ///< pose of the body at which the window began
   OdometryUpdate update_;
 };

@@ -24,8 +24,15 @@ bool has_failed(const NavState& before, const NavState& now) {
 
 bool is_finite(const LinearPrior& prior) { return prior.jacobian.allFinite() && prior.residual.allFinite(); }
 
-bool has_depth(const Landmark& landmark) {
-  return !landmark.dynamic && !landmark.observations.empty() && landmark.observations.back().depth > 0.0;
+/// Whether there is a measured depth in the newest frame.
+bool has_depth(const Landmark& landmark, const Window& window) {
+  return !landmark.dynamic && !landmark.observations.empty() && landmark.last() == window.newest() &&
+         landmark.observations.back().depth > 0.0;
+}
+
+bool has_first_features(const Window& window) {
+  const auto measured = [&](const Landmark& landmark) { return has_depth(landmark, window); };
+  return std::ranges::count_if(window.landmarks, measured) >= kMonitor.tracking.min_first_features;
 }
 
 MonitorOptions monitor_options(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed) {
@@ -186,10 +193,13 @@ bool SensorMonitor::update_status(const Outcome& outcome, const Window& window) 
   return tracking_.update(evidence_, window);
 }
 
+bool SensorMonitor::can_restart(const Window& window) const {
+  return backend_.depth.usage != DepthUsage::kOff && !window.frames.empty() && has_first_features(window);
+}
+
 void SensorMonitor::assess_newest(const Window& window) {
   if (window.newest() == 0) {
-    const auto measured = std::ranges::count_if(window.landmarks, has_depth);
-    evidence_.located = measured >= kMonitor.tracking.min_first_features;
+    evidence_.located = has_first_features(window);
     return;
   }
   known_points_ = known_points(window, backend_.depth, std::move(known_points_));

@@ -94,6 +94,9 @@ class SensorMonitor {
     StatusReason failure = StatusReason::kNone;  ///< the window was cleared because of it
     const std::optional<StateCovariance>& covariance;
   };
+  /// Whether the newest frame has the measured depths by which a window starts.
+  [[nodiscard]] bool can_restart(const Window& window) const;
+
   /// Decides about the status of the frame.
   /// @return whether the window must be cleared
   [[nodiscard]] bool update_status(const Outcome& outcome, const Window& window);

@@ -137,8 +137,8 @@ double Calibration::depth_scale_contradiction(double difference, double variance
 }
 
 /// d^T (C + S)^-1 d with d the difference of the converged estimate from the rig and S what a calibration is
-/// good to. Until rotations are aligned, a camera that is
-/// turned on the body looks like one with another center.
+/// good to. Until rotations are aligned, a camera that is turned on the body looks like one with another
+/// center.
 void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance,
                                Window& window) {
   bool& agrees = window.agrees_with_rig.lens;

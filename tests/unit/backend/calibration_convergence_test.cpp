@@ -317,6 +317,27 @@ TEST(CalibrationConvergence, TheLensIsFoundOnceTheDataContradictsTheRig) {
   }
 }
 
+/// A window that starts anew needs measured depth for its scale: without it the camera was lost.
+TEST(CalibrationConvergence, ALensThatIsFoundWithoutMeasuredDepthLosesNoPose) {
+  BackendConfig config = calibrating_config();
+  config.calibration_agreement_probability = 0.9999;
+  config.estimate_lens = true;
+  config.depth.usage = DepthUsage::kOff;
+  config.initializer.kind = InitializerKind::kMonocular;
+  const SimulatedMotion motion{.pixel_noise_px = 0.25, .noisy_imu = true};
+  Estimator estimator(config, {}, SimulatedMotion::rig(), 1);
+  for (const ImuSample& sample : motion.imu(10.5)) estimator.add_imu(sample);
+  bool was_located = false;
+  for (int i = 0; i < 300; ++i) {
+    const TrackedFrame frame = seen_by({0.0, 0.05, 0.0, 0.0}, motion.frame(i, 0.1 + i / kRate_hz));
+    const bool is_now = is_located(estimator.process(frame).status);
+    EXPECT_TRUE(is_now || !was_located) << i;
+    was_located |= is_now;
+  }
+  EXPECT_TRUE(was_located);
+  EXPECT_FALSE(estimator.update().agrees_with_rig.lens);
+}
+
 TEST(CalibrationConvergence, WithoutAnImuTheDepthScaleStaysAtOne) {
   BackendConfig config = calibrating_config();
   config.depth.estimate_scale = true;
