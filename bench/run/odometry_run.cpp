@@ -259,7 +259,8 @@ class RunRecorder {
     if (update.segment == 0) run_.trajectory.poses.push_back({t, update.T_w_c});
   }
 
-  /// That of the newest located frame: a window that does not fit says nothing about the rig.
+  /// That of the newest located frame: a window that does not fit says nothing about the rig. Deviations are
+  /// those before a restart until its window uses the IMU, which observes the calibration.
   void record_calibration(const OdometryUpdate& update) {
     EstimatedCalibration& calibration = run_.calibration;
     calibration.time_offset_at_bound += update.at_bound.time_offset;
@@ -274,7 +275,7 @@ class RunRecorder {
                      spec_.config.imu.enabled && spec_.config.backend.calibration_agreement_probability > 0.0,
                      calibration);
     calibration.aligned_rotation = update.aligned_rotation;
-    if (!update.covariance) return;
+    if (!update.covariance || (spec_.config.imu.enabled && !update.covariance->inertial)) return;
     calibration.rig_step = update.rig_step;
     calibration.time_offset_sigma_s = std::sqrt(update.covariance->time_offset);
     calibration.lens_sigma = update.covariance->lens.diagonal().cwiseSqrt();
