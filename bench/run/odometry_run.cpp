@@ -275,8 +275,10 @@ class RunRecorder {
                      spec_.config.imu.enabled && spec_.config.backend.calibration_agreement_probability > 0.0,
                      calibration);
     calibration.aligned_rotation = update.aligned_rotation;
-    if (!update.covariance || (spec_.config.imu.enabled && !update.covariance->inertial)) return;
-    calibration.rig_step = update.rig_step;
+    if (!update.covariance) return;
+    const bool observes = !spec_.config.imu.enabled || update.covariance->inertial;
+    calibration.rig_step = observes ? update.rig_step : RigStep{};
+    if (!observes) return;
     calibration.time_offset_sigma_s = std::sqrt(update.covariance->time_offset);
     calibration.lens_sigma = update.covariance->lens.diagonal().cwiseSqrt();
     calibration.depth_scale_sigma =

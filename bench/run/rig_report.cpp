@@ -64,8 +64,7 @@ void add_lens(const EstimatedCalibration& calibration, std::vector<RigFinding>& 
 void add_depth_scale(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
   if (!calibration.depth_scale_agrees || !calibration.depth_scale_sigma) return;
   const bool agrees = *calibration.depth_scale_agrees;
-  const double scale = calibration.depth_scale;
-  const double difference = scale - 1.0 - scale * scale * calibration.rig_step.depth_scale;
+  const double difference = calibration.depth_scale - 1.0 - calibration.rig_step.depth_scale;
   const double sigma = *calibration.depth_scale_sigma;
   findings.push_back(finding_of({"depth scale [%]", 100.0 * difference, 100.0 * sigma,
                                  deviations(difference, sigma, rig_tolerance::kDepthScale), 5.0},

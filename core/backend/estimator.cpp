@@ -262,7 +262,7 @@ void Estimator::converge_calibration(const AgreesWithRig& before) {
     if (has_converged(now, update_.rig_step, *update_.covariance)) break;
     optimize();
   }
-  calibration_found_ = is_found() || (calibration_found_ && !(now.depth_scale && now.lens));
+  if (is_found()) calibration_found_ = true;
 }
 
 void Estimator::optimize() {
@@ -292,7 +292,6 @@ bool Estimator::accept_or_reset(const Eigen::Vector3d& gravity_before) {
     previous_ = newest_;
     newest_ = window().frames.back().state;
     newest_covariance_ = update_.covariance;
-    if (newest_covariance_) calibration_.remember(window(), *newest_covariance_);
   }
   return update_status(true, failure);
 }
@@ -303,7 +302,6 @@ void Estimator::discard_newest() {
   const NavState predicted = window().frames.back().state;
   if (monitor_.status() == OdometryStatus::kInitializing) {
     restart(window().gravity_w);
-    origin_.covariance.setZero();
   } else {
     window_.discard_newest();
   }
@@ -339,16 +337,14 @@ void Estimator::slide() {
 }
 
 /// With a wrong calibration, the states of the window are far from the true ones, and its prior is
-/// linearized at the wrong point: it starts anew, for which vision is needed.
+/// linearized at the wrong point: it starts anew, for which vision and measured depth are needed.
 void Estimator::free_calibration(Timestamp now) {
   if (monitor_.status() == OdometryStatus::kDeadReckoning) return;
   if (calibration_.awaits_alignment()) {
     const std::optional<RotationAlignment> alignment = start_.align_rotations(window(), now, imu_);
     if (alignment && calibration_.align(*alignment)) return restart_with_calibration(alignment->gyro_bias);
   }
-  if (calibration_found_ && update_.covariance && monitor_.can_restart(window()) &&
-      has_converged(window().agrees_with_rig, update_.rig_step, *update_.covariance))
-    restart_with_calibration(newest_.gyro_bias);
+  if (calibration_found_ && monitor_.can_restart(window())) restart_with_calibration(newest_.gyro_bias);
 }
 
 /// With the newest frame, at the same pose of its camera. Gravity and biases were estimated with the

@@ -69,8 +69,7 @@ UncertainPose predicted_pose(const NavState& state, const StateCovariance& claim
 
 void add_origin(const UncertainPose& origin, const NavState& state, const Eigen::Vector3d& gravity_w,
                 StateCovariance& covariance) {
-  Eigen::Matrix3d R_o = origin.T_w_f.R();
-  if (covariance.inertial && covariance.gravity.isZero(0.0)) R_o.topRows<2>().setZero();
+  const Eigen::Matrix3d R_o = origin.T_w_f.R();
   Eigen::Matrix<double, 9, 6> J = Eigen::Matrix<double, 9, 6>::Zero();
   J.topLeftCorner<3, 3>().setIdentity();
   J.block<3, 3>(0, 3) = -skew(state.T_w_b.p - origin.T_w_f.p) * R_o;

@@ -52,8 +52,7 @@ struct MotionState {
 ///
 ///   dp = dp_o - [p - p_o]x R_o dtheta_o,    dtheta = R^T R_o dtheta_o,    dv = -[v]x R_o dtheta_o,
 ///
-/// and, if gravity is estimated, d = B(g)^T R_o dtheta_o of its direction, see gravity_direction.h. In a
-/// world that is level by constant gravity, R_o dtheta_o is about the vertical only.
+/// and, if gravity is estimated, d = B(g)^T R_o dtheta_o of its direction, see gravity_direction.h.
 /// @param covariance of `state`, given o
 void add_origin(const UncertainPose& origin, const NavState& state, const Eigen::Vector3d& gravity_w,
                 StateCovariance& covariance);

@@ -194,9 +194,7 @@ bool SensorMonitor::update_status(const Outcome& outcome, const Window& window) 
 }
 
 bool SensorMonitor::can_restart(const Window& window) const {
-  const bool is_doubted = evidence_.imu_defect != StatusReason::kNone || evidence_.contradiction;
-  return backend_.depth.usage != DepthUsage::kOff && !is_doubted && !window.frames.empty() &&
-         has_first_features(window);
+  return backend_.depth.usage != DepthUsage::kOff && !window.frames.empty() && has_first_features(window);
 }
 
 void SensorMonitor::assess_newest(const Window& window) {

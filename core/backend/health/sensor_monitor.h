@@ -94,8 +94,7 @@ class SensorMonitor {
     StatusReason failure = StatusReason::kNone;  ///< the window was cleared because of it
     const std::optional<StateCovariance>& covariance;
   };
-  /// Whether the newest frame has the measured depths by which a window starts, and its inertial data is not
-  /// doubted, which a restart would forget.
+  /// Whether the newest frame has the measured depths by which a window starts.
   [[nodiscard]] bool can_restart(const Window& window) const;
 
   /// Decides about the status of the frame.

@@ -140,7 +140,7 @@ double Calibration::depth_scale_contradiction(double difference, double variance
 /// good to. Until rotations are aligned, a camera that is turned on the body looks like one with another
 /// center.
 void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance,
-                               Window& window) const {
+                               Window& window) {
   bool& agrees = window.agrees_with_rig.lens;
   const Eigen::Vector4d difference = window.lens + step;
   Eigen::Matrix4d tolerated = covariance;
@@ -150,14 +150,18 @@ void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4
   const double contradiction = difference.dot(tolerated.llt().solve(difference));
   agrees = contradiction < (agrees ? kOtherLens : kLikeRig);
   if (agrees) set_lens(Eigen::Vector4d::Zero(), window);
+  lens_found_.reset();
+  if (!agrees) lens_found_ = {window.lens, covariance};
 }
 
-void Calibration::compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) const {
+void Calibration::compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) {
   Matrix6 tolerated = covariance;
   tolerated.diagonal().head<3>().array() += rig_tolerance::kLever_m * rig_tolerance::kLever_m;
   tolerated.diagonal().tail<3>().array() += rig_tolerance::kRotation_rad * rig_tolerance::kRotation_rad;
   const double contradiction = step.dot(tolerated.llt().solve(step));
   window.agrees_with_rig.extrinsics &= agrees_with_rig(contradiction, local_size(BlockKind::kExtrinsics));
+  extrinsics_found_.reset();
+  if (!window.agrees_with_rig.extrinsics) extrinsics_found_ = window.T_b_c;
 }
 
 void Calibration::compare_with_rig(const RigStep& step, const StateCovariance& covariance, Window& window) {
@@ -170,20 +174,10 @@ void Calibration::compare_with_rig(const RigStep& step, const StateCovariance& c
         depth_scale_contradiction(difference, depth_scale_variance, window.frames.back().state.t);
     agrees.depth_scale = contradiction < (agrees.depth_scale ? kOtherScale : kLikeRig);
     if (agrees.depth_scale) window.depth_scale = 1.0;
+    depth_scale_found_.reset();
+    if (!agrees.depth_scale) depth_scale_found_ = {window.depth_scale, std::sqrt(depth_scale_variance)};
   }
   if (!awaits_alignment()) compare_extrinsics(step.extrinsics, covariance.extrinsics, window);
-}
-
-void Calibration::remember(const Window& window, const StateCovariance& covariance) {
-  if (!starts_with_rig() || !covariance.inertial) return;
-  const AgreesWithRig& agrees = window.agrees_with_rig;
-  extrinsics_found_.reset();
-  depth_scale_found_.reset();
-  lens_found_.reset();
-  if (config_.estimate_extrinsics && !agrees.extrinsics) extrinsics_found_ = window.T_b_c;
-  if (compares_depth_scale() && !agrees.depth_scale)
-    depth_scale_found_ = {window.depth_scale, std::sqrt(covariance.depth_scale)};
-  if (compares_lens() && !agrees.lens) lens_found_ = {window.lens, covariance.lens};
 }
 
 CalibrationAtBound Calibration::limit(Window& window) const {

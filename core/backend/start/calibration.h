@@ -62,10 +62,6 @@ class Calibration {
   /// @param window calibration that contradicts the rig becomes variable in it
   void compare_with_rig(const RigStep& step, const StateCovariance& covariance, Window& window);
 
-  /// What contradicts the rig in a window whose states are accepted: the next windows start with it.
-  /// @param covariance of its newest state
-  void remember(const Window& window, const StateCovariance& covariance);
-
   /// `limit_calibration` about the rig.
   CalibrationAtBound limit(Window& window) const;
 
@@ -88,8 +84,8 @@ class Calibration {
   [[nodiscard]] bool compares_depth_scale() const {
     return starts_with_rig() && config_.depth.estimate_scale;
   }
-  void compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) const;
-  void compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance, Window& window) const;
+  void compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window);
+  void compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance, Window& window);
   [[nodiscard]] double depth_scale_contradiction(double difference, double variance, Timestamp now);
   [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
   /// Whether there is an alignment that contradicts the rig.

@@ -66,7 +66,7 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   Window compared = calibration.calibrated_window();
   const AgreesWithRig& agrees = compared.agrees_with_rig;
   EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
-  StateCovariance covariance{.inertial = true};
+  StateCovariance covariance;
   covariance.extrinsics = 1e-6 * StateCovariance::Matrix6::Identity();
   RigStep step;
   // 16.8 is the 0.99 quantile of six degrees of freedom; a calibration leaves 0.003 rad.
@@ -76,9 +76,9 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   step.extrinsics[4] *= 1.4;
   calibration.compare_with_rig(step, covariance, compared);
   EXPECT_FALSE(agrees.extrinsics);
-  EXPECT_TRUE(calibration.calibrated_window().agrees_with_rig.extrinsics);  // until the window is accepted
+  EXPECT_EQ(compared.T_b_c.p, rig.T_b_c.p);
   compared.T_b_c.p.x() = 0.12;
-  calibration.remember(compared, covariance);
+  calibration.compare_with_rig({}, covariance, compared);
   const Window window = calibration.calibrated_window();
   EXPECT_FALSE(window.agrees_with_rig.extrinsics);
   EXPECT_EQ(window.T_b_c.p.x(), 0.12);
@@ -113,7 +113,7 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   config.estimate_lens = true;
   Calibration calibration(config, true, {});
   Window window = calibration.calibrated_window();
-  StateCovariance covariance{.inertial = true};
+  StateCovariance covariance;
   covariance.lens = 1e-6 * Eigen::Matrix4d::Identity();
   EXPECT_TRUE(window.agrees_with_rig.lens);
   calibration.compare_with_rig({.lens = {0.0015, 0.002, 0.0, 0.0}}, covariance, window);
@@ -122,7 +122,6 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   EXPECT_FALSE(window.agrees_with_rig.lens);
   window.lens = {0.02, -0.04, 0.0, 0.01};
   calibration.compare_with_rig({}, covariance, window);
-  calibration.remember(window, covariance);
   EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d(0.02, -0.04, 0.0, 0.01));
   const Eigen::Matrix4d root = calibration.prior().jacobian.bottomRightCorner<4, 4>();
   EXPECT_TRUE((root.transpose() * root).isApprox(1e6 * Eigen::Matrix4d::Identity()));
@@ -130,7 +129,6 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   calibration.compare_with_rig({}, covariance, window);
   EXPECT_TRUE(window.agrees_with_rig.lens);
   EXPECT_EQ(window.lens, Eigen::Vector4d::Zero());
-  calibration.remember(window, covariance);
   EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d::Zero());
 }
 
@@ -154,10 +152,9 @@ struct Compared {
   void compare(double step, double sigma, double seconds) {
     window.frames.resize(1);
     window.frames.back().state.t = after(Timestamp{}, seconds);
-    StateCovariance covariance{.inertial = true};
+    StateCovariance covariance;
     covariance.depth_scale = sigma * sigma;
     calibration.compare_with_rig({.depth_scale = step}, covariance, window);
-    calibration.remember(window, covariance);
   }
 };
 
@@ -261,12 +258,11 @@ TEST(Calibration, EstimatesExtrinsicsSinceRotationsContradictThem) {
   EXPECT_FALSE(calibration.align(alignment));
   EXPECT_FALSE(calibration.calibrated_window().is_realigned);
   EXPECT_EQ(calibration.aligned_rotation()->deviations, 0.5);
-  StateCovariance covariance{.inertial = true};
+  StateCovariance covariance;
   covariance.lens = 1e-8 * Eigen::Matrix4d::Identity();
   Window window = calibration.calibrated_window();
   window.frames.emplace_back();
   calibration.compare_with_rig({.lens = {0.0, 0.0, 0.05, 0.0}}, covariance, window);
-  calibration.remember(window, covariance);
   ASSERT_FALSE(calibration.calibrated_window().agrees_with_rig.lens);
   alignment.rig_contradiction = 100.0;
   EXPECT_FALSE(calibration.align(alignment));

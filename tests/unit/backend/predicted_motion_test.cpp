@@ -98,16 +98,6 @@ TEST(AddOrigin, IsTheErrorOfARigidMotion) {
   }
 }
 
-/// Gravity of a fixed direction tells the inclination of each window anew.
-TEST(AddOrigin, TurnsALevelWorldAboutTheVerticalOnly) {
-  UncertainPose origin{{exp_so3({-0.2, 0.4, 1.1}), {-2.0, 0.5, 1.0}}};
-  origin.covariance.bottomRightCorner<3, 3>().setIdentity();
-  StateCovariance covariance{.inertial = true};
-  add_origin(origin, moving_state(), kGravity, covariance);
-  EXPECT_NEAR(covariance.position()(2, 2), 0.0, 1e-12);
-  EXPECT_NEAR(covariance.rotation().trace(), 1.0, 1e-12);
-}
-
 TEST(AddOrigin, LeavesThePredictedMotionAsItIs) {
   const Preintegration imu = tenth_of_a_second({0.001, 0.01, 1e-5, 1e-4});
   StateCovariance claimed{.inertial = true};
