@@ -259,8 +259,8 @@ class RunRecorder {
     if (update.segment == 0) run_.trajectory.poses.push_back({t, update.T_w_c});
   }
 
-  /// That of the newest located frame: a window that does not fit says nothing about the rig. Deviations are
-  /// those before a restart until its window uses the IMU, which observes the calibration.
+  /// That of the newest located frame: a window that does not fit says nothing about the rig. After a
+  /// restart, until its window uses the IMU, the deviations are those before it, and no step is left.
   void record_calibration(const OdometryUpdate& update) {
     EstimatedCalibration& calibration = run_.calibration;
     calibration.time_offset_at_bound += update.at_bound.time_offset;

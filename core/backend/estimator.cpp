@@ -252,7 +252,8 @@ void Estimator::solve() {
   converge_calibration(before);
 }
 
-/// A solve moves a depth scale or lens that was constant before by a part of its difference only.
+/// A solve can move a depth scale or lens that was constant before by a part of its difference only. Without
+/// convergence the window starts anew with what was reached.
 void Estimator::converge_calibration(const AgreesWithRig& before) {
   const AgreesWithRig& now = window().agrees_with_rig;
   const auto is_found = [&] {

@@ -76,7 +76,6 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   step.extrinsics[4] *= 1.4;
   calibration.compare_with_rig(step, covariance, compared);
   EXPECT_FALSE(agrees.extrinsics);
-  EXPECT_EQ(compared.T_b_c.p, rig.T_b_c.p);
   compared.T_b_c.p.x() = 0.12;
   calibration.compare_with_rig({}, covariance, compared);
   const Window window = calibration.calibrated_window();
@@ -86,7 +85,7 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   EXPECT_EQ(window.depth_scale, 1.0);
 }
 
-/// One solve of four iterations moves a scale by a tenth of its difference.
+/// One solve can move a scale by a tenth of its difference only.
 TEST(Calibration, AScaleThatHasNotConvergedStillDiffersFromTheRig) {
   Calibration calibration(estimating_config(), true, {});
   Window window = calibration.calibrated_window();
