@@ -4,6 +4,7 @@
 #include "core/backend/factors/gravity_direction.h"
 #include "core/backend/vision/camera_pose.h"
 #include "core/config/monitor_config.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
 
@@ -48,7 +49,7 @@ UncertainPose predicted_motion(const NavState& state, const StateCovariance& cla
   J.block<3, 3>(Index::kPosition, Index::kVelocity) = imu.duration_s() * R_b_w;
   J.rightCols<6>() = imu.jacobian().topRightCorner<6, 6>();
   return {.T_w_f = product(state.T_w_b.inverse(), imu.predict(state, gravity_w).T_w_b),
-          .covariance = J * claimed.state * J.transpose() + imu.covariance().topLeftCorner<6, 6>()};
+          .covariance = propagate(J, claimed.state) + imu.covariance().topLeftCorner<6, 6>()};
 }
 
 UncertainPose predicted_pose(const NavState& state, const StateCovariance& claimed, const Preintegration& imu,
@@ -57,13 +58,13 @@ UncertainPose predicted_pose(const NavState& state, const StateCovariance& claim
   Matrix15 Q = Matrix15::Identity();
   Q.block<3, 3>(ImuErrorIndex::kPosition, ImuErrorIndex::kPosition) = state.T_w_b.R();
   Q.block<3, 3>(ImuErrorIndex::kVelocity, ImuErrorIndex::kVelocity) = state.T_w_b.R();
-  const Matrix15 J = Q * imu.jacobian() * Q.transpose();
-  const Matrix15 covariance = J * claimed.state * J.transpose() + Q * imu.covariance() * Q.transpose();
+  const Matrix15 J = propagate(Q, imu.jacobian());
+  const Matrix15 covariance = propagate(J, claimed.state) + propagate(Q, imu.covariance());
   UncertainPose predicted{.T_w_f = imu.predict(state, gravity_w).T_w_b,
                           .covariance = covariance.topLeftCorner<6, 6>()};
   const Eigen::Matrix<double, 3, 2> by_gravity =
       0.5 * imu.duration_s() * imu.duration_s() * gravity_jacobian(gravity_w);
-  predicted.covariance.topLeftCorner<3, 3>() += by_gravity * claimed.gravity * by_gravity.transpose();
+  predicted.covariance.topLeftCorner<3, 3>() += propagate(by_gravity, claimed.gravity);
   return predicted;
 }
 
@@ -75,10 +76,10 @@ void add_origin(const UncertainPose& origin, const NavState& state, const Eigen:
   J.block<3, 3>(0, 3) = -skew(state.T_w_b.p - origin.T_w_f.p) * R_o;
   J.block<3, 3>(3, 3) = state.T_w_b.R().transpose() * R_o;
   if (covariance.inertial) J.block<3, 3>(6, 3) = -skew(state.v_w) * R_o;
-  covariance.state.topLeftCorner<9, 9>() += J * origin.covariance * J.transpose();
+  covariance.state.topLeftCorner<9, 9>() += propagate(J, origin.covariance);
   if (covariance.gravity.isZero(0.0)) return;
   const Eigen::Matrix<double, 2, 3> J_gravity = gravity_basis(gravity_w).transpose() * R_o;
-  covariance.gravity += J_gravity * origin.covariance.bottomRightCorner<3, 3>() * J_gravity.transpose();
+  covariance.gravity += propagate<2, 3>(J_gravity, origin.covariance.bottomRightCorner<3, 3>());
 }
 
 void drop_old_samples(const MotionState& motion, ImuBuffer& imu) {

@@ -534,7 +534,7 @@ void BatchProblem::update_imu_noise() {
     const Matrix15& P = inertial_[k].imu.covariance();
     const Eigen::Vector3d rotation = r.segment<3>(ImuErrorIndex::kRotation);
     gyro.push_back(
-        std::sqrt(rotation.dot(solve_symmetric<3>(
+        std::sqrt(rotation.dot(solve_symmetric<3, 1>(
                       P.block<3, 3>(ImuErrorIndex::kRotation, ImuErrorIndex::kRotation), rotation)) /
                   3.0));
     Eigen::Matrix<double, 6, 1> motion;

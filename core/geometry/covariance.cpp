@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "core/geometry/decompositions.h"
 #include "core/geometry/pose_from_points.h"
 #include "core/geometry/so3.h"
@@ -52,7 +50,7 @@ UncertainPose compose(const UncertainPose& a, const UncertainPose& b) {
   Matrix6 J_b = Matrix6::Identity();
   J_b.topLeftCorner<3, 3>() = a.T_w_f.R();
   return {.T_w_f = a.T_w_f * b.T_w_f,
-          .covariance = J_a * a.covariance * J_a.transpose() + J_b * b.covariance * J_b.transpose()};
+          .covariance = propagate(J_a, a.covariance) + propagate(J_b, b.covariance)};
 }
 
 UncertainPose inverse(const UncertainPose& a) {
@@ -61,7 +59,7 @@ UncertainPose inverse(const UncertainPose& a) {
   J.topLeftCorner<3, 3>() = -R_transposed;
   J.topRightCorner<3, 3>() = -skew(R_transposed * a.T_w_f.p);
   J.bottomRightCorner<3, 3>() = -a.T_w_f.R();
-  return {.T_w_f = a.T_w_f.inverse(), .covariance = J * a.covariance * J.transpose()};
+  return {.T_w_f = a.T_w_f.inverse(), .covariance = propagate(J, a.covariance)};
 }
 
 UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12& joint) {
@@ -73,14 +71,14 @@ UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12
   J.block<3, 3>(0, 6) = R_a_w;
   J.block<3, 3>(3, 3) = -T_a_b.R().transpose();
   J.block<3, 3>(3, 9).setIdentity();
-  return {.T_w_f = T_a_b, .covariance = J * joint * J.transpose()};
+  return {.T_w_f = T_a_b, .covariance = propagate(J, joint)};
 }
 
 Eigen::Matrix2d projection_covariance(const UncertainPose& camera, const Eigen::Vector3d& p_c) {
   const Eigen::Matrix<double, 2, 3> J_point = bearing_jacobian(p_c.hnormalized(), 1.0 / p_c.z());
   Eigen::Matrix<double, 2, 6> J;
   J << -J_point * camera.T_w_f.R().transpose(), J_point * skew(p_c);
-  return J * camera.covariance * J.transpose();
+  return propagate(J, camera.covariance);
 }
 
 double squared_distance(const Pose& a, const Pose& b, const Matrix6& covariance) {
@@ -90,7 +88,7 @@ double squared_distance(const Pose& a, const Pose& b, const Matrix6& covariance)
 
 UncertainPose fuse(const UncertainPose& a, const UncertainPose& b) {
   const Matrix6 sum = a.covariance + b.covariance;
-  const Matrix6 K = sum.ldlt().solve(a.covariance).transpose();
+  const Matrix6 K = solve_symmetric(sum, a.covariance).transpose();
   const Vector6 step = K * pose_difference(a.T_w_f, b.T_w_f);
   return {.T_w_f = {(a.T_w_f.q * exp_so3(step.tail<3>())).normalized(), a.T_w_f.p + step.head<3>()},
           .covariance = a.covariance - K * a.covariance};

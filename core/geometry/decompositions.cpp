@@ -8,15 +8,35 @@
 #include <Eigen/SVD>
 
 namespace stillpoint {
+namespace {
 
-template <int N>
-ColumnVector<N> solve_symmetric(const SquareMatrix<N>& A, const ColumnVector<N>& b) {
-  return A.ldlt().solve(b);
+// Of any size up to a largest one, without memory from the heap.
+template <int MaxSize>
+using BoundedMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, MaxSize, MaxSize>;
+}  // namespace
+
+void detail::solve_symmetric(const Eigen::Ref<const Eigen::MatrixXd>& A,
+                             const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::Ref<Eigen::MatrixXd> x) {
+  const BoundedMatrix<7> matrix = A;
+  const BoundedMatrix<7> right = b;
+  x = matrix.ldlt().solve(right);
 }
-template ColumnVector<3> solve_symmetric<3>(const SquareMatrix<3>&, const ColumnVector<3>&);
-template ColumnVector<4> solve_symmetric<4>(const SquareMatrix<4>&, const ColumnVector<4>&);
-template ColumnVector<6> solve_symmetric<6>(const SquareMatrix<6>&, const ColumnVector<6>&);
-template ColumnVector<7> solve_symmetric<7>(const SquareMatrix<7>&, const ColumnVector<7>&);
+
+void detail::inverse_root(const Eigen::Ref<const Eigen::MatrixXd>& P, Eigen::Ref<Eigen::MatrixXd> W) {
+  const BoundedMatrix<7> matrix = P;
+  const Eigen::LLT<BoundedMatrix<7>> factor(matrix);
+  W.setZero();
+  if (factor.info() != Eigen::Success) return;
+  W.setIdentity();
+  factor.matrixL().solveInPlace(W);
+}
+
+void detail::propagate(const Eigen::Ref<const Eigen::MatrixXd>& J, const Eigen::Ref<const Eigen::MatrixXd>& P,
+                       Eigen::Ref<Eigen::MatrixXd> result) {
+  const BoundedMatrix<18> product = J.lazyProduct(P);
+  result = product.lazyProduct(J.transpose());
+}
 
 Eigen::Vector3d eigenvalues(const Eigen::Matrix3d& A) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(A, Eigen::EigenvaluesOnly).eigenvalues();

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/geometry/covariance.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -59,7 +60,7 @@ void OdometryDrift::append(Timestamp t, const Pose& T_w_b, const Matrix6& step) 
     J.topLeftCorner<3, 3>() = T_w_b_.back().R();
     J.topRightCorner<3, 3>() = skew(T_w_b.p) * T_w_b.R();
     J.bottomRightCorner<3, 3>() = T_w_b.R();
-    sum = sums_.back() + J * step * J.transpose();
+    sum = sums_.back() + propagate(J, step);
   }
   times_.push_back(t);
   T_w_b_.push_back(T_w_b);

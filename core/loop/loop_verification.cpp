@@ -249,7 +249,7 @@ Matrix6 body_covariance(const Pose& A, const EstimatedRelativePose& T, const Pos
   J.topLeftCorner<3, 3>() = A.R();
   J.topRightCorner<3, 3>() = -A.R() * T.T_m_q.R() * skew(B.p);
   J.bottomRightCorner<3, 3>() = B.R().transpose();
-  Matrix6 covariance = J * T.covariance * J.transpose();
+  Matrix6 covariance = propagate(J, T.covariance);
   const double sigma_m = kMinSigma_m + kSigmaPerDistance * T.T_m_q.p.norm();
   const double sigma_rad =
       kMinSigma_rad + kSigmaPerAngle * T.T_m_q.q.angularDistance(Eigen::Quaterniond::Identity());

@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "core/backend/factors/gravity_direction.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/pose_from_points.h"
 #include "core/geometry/so3.h"
 
@@ -16,15 +15,10 @@ using PoseJacobian = Eigen::Matrix<double, 6, 7, Eigen::RowMajor>;
 
 Pose pose_at(const double* x) { return {Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
 
-Matrix6 square_root_information(const Matrix6& covariance) {
-  const Matrix6 information = covariance.llt().solve(Matrix6::Identity());
-  return information.llt().matrixU();
-}
-
 }  // namespace
 
 RelativePoseFactor::RelativePoseFactor(const GraphEdge& edge, const double& weight)
-    : T_i_j_(edge.T_i_j), sqrt_information_(square_root_information(edge.covariance)), weight_(weight) {}
+    : T_i_j_(edge.T_i_j), sqrt_information_(inverse_root(edge.covariance)), weight_(weight) {}
 
 bool RelativePoseFactor::Evaluate(double const* const* parameters, double* residuals,
                                   double** jacobians) const {

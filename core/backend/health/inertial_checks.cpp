@@ -6,6 +6,7 @@
 
 #include "core/config/monitor_config.h"
 #include "core/geometry/covariance.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
 
@@ -56,7 +57,7 @@ ErrorCovariance error_covariance(const VisualPoses& poses, const PreintegratedIn
   accel *= 2.0 / T;
   gyro.middleCols<3>(3) = imu.dq.conjugate().toRotationMatrix() / T;
   gyro.middleCols<3>(15) = -I / T;
-  return {accel * poses.covariance * accel.transpose(), gyro * poses.covariance * gyro.transpose()};
+  return {propagate(accel, poses.covariance), propagate(gyro, poses.covariance)};
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ VisualPoses chained_poses(const VisualPose& A, const VisualPose& B, const Visual
   J1.block<3, 3>(15, 3) = T_B_C.R().transpose();
   J2.block<3, 3>(12, 0) = R_B;
   J2.block<3, 3>(15, 3).setIdentity();
-  return {A, B, C, J1 * B.covariance * J1.transpose() + J2 * C.covariance * J2.transpose()};
+  return {A, B, C, propagate(J1, B.covariance) + propagate(J2, C.covariance)};
 }
 
 std::optional<InertialError> inertial_error(const VisualPoses& poses, const NavState& state,

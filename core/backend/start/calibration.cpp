@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/window/landmark_tracks.h"
 #include "core/geometry/covariance.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "core/types/rig_tolerance.h"
 
@@ -86,9 +85,7 @@ LinearPrior Calibration::prior() const {
   LinearPrior prior = is_aligned_otherwise()
                           ? aligned_calibration_prior(window, config, rotation_alignment_->covariance)
                           : calibration_prior(window, config);
-  if (lens_found_)
-    prior.jacobian.bottomRightCorner<4, 4>() =
-        lens_found_->covariance.llt().matrixL().solve(Eigen::Matrix4d::Identity());
+  if (lens_found_) prior.jacobian.bottomRightCorner<4, 4>() = inverse_root(lens_found_->covariance);
   return prior;
 }
 
@@ -147,7 +144,7 @@ void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4
   tolerated.diagonal() += Eigen::Vector4d::Map(rig_tolerance::kLens.data()).cwiseAbs2();
   if (awaits_alignment())
     tolerated.diagonal().tail<2>().array() += config_.extrinsics_sigma_rad * config_.extrinsics_sigma_rad;
-  const double contradiction = difference.dot(tolerated.llt().solve(difference));
+  const double contradiction = difference.dot(solve_symmetric(tolerated, difference));
   agrees = contradiction < (agrees ? kOtherLens : kLikeRig);
   if (agrees) set_lens(Eigen::Vector4d::Zero(), window);
   lens_found_.reset();
@@ -158,7 +155,7 @@ void Calibration::compare_extrinsics(const Vector6& step, const Matrix6& covaria
   Matrix6 tolerated = covariance;
   tolerated.diagonal().head<3>().array() += rig_tolerance::kLever_m * rig_tolerance::kLever_m;
   tolerated.diagonal().tail<3>().array() += rig_tolerance::kRotation_rad * rig_tolerance::kRotation_rad;
-  const double contradiction = step.dot(tolerated.llt().solve(step));
+  const double contradiction = step.dot(solve_symmetric(tolerated, step));
   window.agrees_with_rig.extrinsics &= agrees_with_rig(contradiction, local_size(BlockKind::kExtrinsics));
   extrinsics_found_.reset();
   if (!window.agrees_with_rig.extrinsics) extrinsics_found_ = window.T_b_c;

@@ -3,9 +3,8 @@
 
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "core/backend/solvers/window_problem.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -75,8 +74,7 @@ LinearPrior prior_with_gravity(LinearPrior prior, const Window& window, const Ba
                                              : pose_root_information(kGaugeSigma_m, kGaugeSigma_rad);
   prior.jacobian.block<3, 3>(6, 9).diagonal().setConstant(1.0 / config.initializer.gyro_bias_sigma);
   prior.jacobian.block<3, 3>(9, 12).diagonal().setConstant(1.0 / config.initializer.accel_bias_sigma);
-  prior.jacobian.block<2, 2>(12, 15) =
-      window.gravity_covariance->llt().matrixL().solve(Eigen::Matrix2d::Identity());
+  prior.jacobian.block<2, 2>(12, 15) = inverse_root(*window.gravity_covariance);
   return prior;
 }
 
@@ -130,7 +128,7 @@ LinearPrior aligned_calibration_prior(const Window& window, const BackendConfig&
                                       const Eigen::Matrix4d& rotation_and_offset) {
   LinearPrior prior = calibration_prior(window, config);
   // Rotation and time offset are adjacent, in columns 3 to 6.
-  prior.jacobian.block<4, 4>(3, 3) = rotation_and_offset.llt().matrixL().solve(Eigen::Matrix4d::Identity());
+  prior.jacobian.block<4, 4>(3, 3) = inverse_root(rotation_and_offset);
   return prior;
 }
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/start/initializer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include "core/backend/factors/gravity_direction.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 #include "core/imu/preintegration.h"
 
@@ -27,68 +28,93 @@ Eigen::Vector3d solve_gyro_bias(const Window& window) {
   return estimate_gyro_bias(pairs);
 }
 
-/// Linear system A [v_0, g, s - 1] = y of align_with_imu, three rows per frame k >= 1; without the last
-/// column s = 1.
-struct AlignmentSystem {
-  Eigen::MatrixXd A;
-  Eigen::VectorXd y;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Vector7 = Eigen::Matrix<double, 7, 1>;
+
+/// Normal equations H x = b of the linear system A x = y of align_with_imu, x = [v_0, g, s - 1]:
+/// H = A^T A, b = A^T y. If the poses are metric, s - 1 = 0 is one of the equations.
+struct AlignmentEquations {
+  SquareMatrix<7> H = SquareMatrix<7>::Zero();
+  Vector7 b = Vector7::Zero();
+  double squared = 0.0;  ///< y^T y
+  int redundancy = -6;   ///< number of equations less that of unknowns, with two of gravity
 };
 
-AlignmentSystem alignment_system(const Window& window, const Eigen::Vector3d& gyro_bias, bool metric) {
-  const int frames = static_cast<int>(window.frames.size());
-  const Eigen::Index rows = 3 * Eigen::Index{frames - 1};
-  AlignmentSystem system{Eigen::MatrixXd::Zero(rows, metric ? 6 : 7), Eigen::VectorXd::Zero(rows)};
+AlignmentEquations alignment_equations(const Window& window, const Eigen::Vector3d& gyro_bias, bool metric) {
+  AlignmentEquations equations;
+  if (metric) {
+    equations.H(6, 6) = 1.0;
+    ++equations.redundancy;
+  }
   const Eigen::Vector3d p_0 = window.frames[0].state.T_w_b.p;
   Eigen::Vector3d alpha = Eigen::Vector3d::Zero();  // displacement due to specific force
   Eigen::Vector3d beta = Eigen::Vector3d::Zero();   // velocity due to specific force
   double time = 0.0;
-  for (int k = 1; k < frames; ++k) {
+  for (int k = 1; k < static_cast<int>(window.frames.size()); ++k) {
     Preintegration imu = *window.frames[static_cast<std::size_t>(k)].from_previous;
     imu.repropagate(gyro_bias, imu.accel_bias());
     const Eigen::Quaterniond& q_w_b = window.frames[static_cast<std::size_t>(k - 1)].state.T_w_b.q;
     alpha += beta * imu.duration_s() + q_w_b * imu.delta_p(gyro_bias, imu.accel_bias());
     beta += q_w_b * imu.delta_v(gyro_bias, imu.accel_bias());
     time += imu.duration_s();
-    const Eigen::Index row = 3 * Eigen::Index{k - 1};
-    system.A.block<3, 3>(row, 0) = Eigen::Matrix3d::Identity() * time;
-    system.A.block<3, 3>(row, 3) = Eigen::Matrix3d::Identity() * (0.5 * time * time);
-    if (!metric) system.A.block<3, 1>(row, 6) = window.T_w_c(0).p - window.T_w_c(k).p;
-    system.y.segment<3>(row) = window.frames[static_cast<std::size_t>(k)].state.T_w_b.p - p_0 - alpha;
+    Eigen::Matrix<double, 3, 7> A;
+    A.leftCols<3>() = Eigen::Matrix3d::Identity() * time;
+    A.middleCols<3>(3) = Eigen::Matrix3d::Identity() * (0.5 * time * time);
+    A.col(6).setZero();
+    if (!metric) A.col(6) = window.T_w_c(0).p - window.T_w_c(k).p;
+    const Eigen::Vector3d y = window.frames[static_cast<std::size_t>(k)].state.T_w_b.p - p_0 - alpha;
+    equations.H += A.transpose().lazyProduct(A);
+    equations.b += A.transpose() * y;
+    equations.squared += y.squaredNorm();
+    equations.redundancy += 3;
   }
-  return system;
+  return equations;
 }
 
-/// Solution of the alignment system with the norm of gravity constrained.
-struct RefinedGravity {
-  Eigen::Vector3d gravity_w;
-  Eigen::VectorXd solution;  ///< v_0, last increment w, and s - 1 if estimated
-  bool scale_is_certain = true;
+/// Two orthonormal vectors orthogonal to `direction`.
+Eigen::Matrix<double, 3, 2> orthogonal_vectors(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d first = direction.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> vectors;
+  vectors << first, direction.normalized().cross(first);
+  return vectors;
+}
+
+/// Least-squares solution z = [v_0, w, s - 1] with g = g' + |g'| B w, to first order in the angles w.
+struct TangentSolution {
+  Eigen::Matrix<double, 3, 2> B;  ///< basis of the tangent plane
+  Vector6 z;
+  SquareMatrix<6> covariance;  ///< of z, with the variance of the residuals
 };
 
-/// Gravity refinement on the tangent plane (see align_with_imu).
-/// @param gravity_w initial guess, of the configured norm
-RefinedGravity refine_gravity(const AlignmentSystem& system, const Eigen::Vector3d& gravity_w,
-                              double max_scale_sigma) {
-  const Eigen::MatrixXd A_gravity = system.A.middleCols<3>(3);
-  const Eigen::Index scale_columns = system.A.cols() - 6;
-  RefinedGravity refined{.gravity_w = gravity_w};
-  Eigen::MatrixXd A(system.A.rows(), 5 + scale_columns);
-  Eigen::VectorXd residual;
-  for (int i = 0; i < kGravitySteps; ++i) {
-    const Eigen::Matrix<double, 3, 2> basis = orthogonal_vectors(refined.gravity_w);
-    A << system.A.leftCols<3>(), A_gravity * basis, system.A.rightCols(scale_columns);
-    const Eigen::VectorXd y = system.y - A_gravity * refined.gravity_w;
-    refined.solution = A.colPivHouseholderQr().solve(y);
-    residual = y - A * refined.solution;
-    refined.gravity_w =
-        gravity_w.norm() * (refined.gravity_w + basis * refined.solution.segment<2>(3)).normalized();
-  }
-  if (scale_columns == 0) return refined;
-  const double variance = residual.squaredNorm() / static_cast<double>(A.rows() - A.cols());
-  const Eigen::MatrixXd covariance = variance * least_squares_covariance(A);
-  const double scale = 1.0 + refined.solution[5];
-  refined.scale_is_certain = std::sqrt(covariance(5, 5)) <= max_scale_sigma * scale;
-  return refined;
+/// @param gravity_w g'
+TangentSolution solve_on_tangent_plane(const AlignmentEquations& equations,
+                                       const Eigen::Vector3d& gravity_w) {
+  TangentSolution solution{.B = orthogonal_vectors(gravity_w)};
+  // x = x' + E z
+  Eigen::Matrix<double, 7, 6> E = Eigen::Matrix<double, 7, 6>::Zero();
+  E.topLeftCorner<3, 3>().setIdentity();
+  E.block<3, 2>(3, 3) = gravity_w.norm() * solution.B;
+  E(6, 5) = 1.0;
+  Vector7 known = Vector7::Zero();
+  known.segment<3>(3) = gravity_w;
+  const Vector7 H_known = equations.H * known;
+  const SquareMatrix<6> H = propagate<6, 7>(E.transpose(), equations.H);
+  const Vector6 b = E.transpose() * (equations.b - H_known);
+  solution.z = solve_symmetric(H, b);
+  const double squared = equations.squared + known.dot(H_known - 2.0 * equations.b) - solution.z.dot(b);
+  solution.covariance =
+      std::max(0.0, squared) / equations.redundancy * solve_symmetric<6, 6>(H, SquareMatrix<6>::Identity());
+  return solution;
+}
+
+/// Covariance of the direction g / |g| in its tangent plane, 3x3 of rank 2: that of the least squares, plus
+/// that of an accelerometer bias, which the system cannot tell from gravity.
+/// @param accel_bias_sigma [m/s^2]
+Eigen::Matrix3d gravity_direction_covariance(const TangentSolution& solution, double gravity,
+                                             double accel_bias_sigma) {
+  const double bias_variance = std::pow(accel_bias_sigma / gravity, 2);
+  return propagate<3, 2>(solution.B,
+                         solution.covariance.block<2, 2>(3, 3) + bias_variance * Eigen::Matrix2d::Identity());
 }
 
 /// Scales camera positions (about camera 0) and landmark depths by `scale`.
@@ -110,19 +136,24 @@ std::optional<InertialAlignment> align_with_imu(const Window& window, double gra
   InertialAlignment alignment;
   alignment.gyro_bias = solve_gyro_bias(window);
   const bool metric = config.kind != InitializerKind::kMonocular;
-  const AlignmentSystem system = alignment_system(window, alignment.gyro_bias, metric);
-  const Eigen::VectorXd unconstrained = system.A.colPivHouseholderQr().solve(system.y);
+  const AlignmentEquations equations = alignment_equations(window, alignment.gyro_bias, metric);
+  const Vector7 unconstrained = solve_symmetric(equations.H, equations.b);
   alignment.unconstrained_gravity = unconstrained.segment<3>(3).norm();
   if (!(std::abs(alignment.unconstrained_gravity - gravity) <= config.gravity_tolerance)) return std::nullopt;
 
-  const RefinedGravity refined =
-      refine_gravity(system, gravity * unconstrained.segment<3>(3).normalized(), config.max_scale_sigma);
-  if (!refined.scale_is_certain) return std::nullopt;
-  alignment.gravity_w = refined.gravity_w;
-  alignment.gravity_covariance =
-      gravity_direction_covariance({system.A, system.y}, refined.gravity_w, config.accel_bias_sigma);
-  alignment.first_velocity_w = refined.solution.head<3>();
-  if (!metric) alignment.scale = 1.0 + refined.solution[5];
+  alignment.gravity_w = gravity * unconstrained.segment<3>(3).normalized();
+  TangentSolution solution;
+  for (int i = 0; i < kGravitySteps; ++i) {
+    solution = solve_on_tangent_plane(equations, alignment.gravity_w);
+    alignment.gravity_w =
+        gravity * (alignment.gravity_w.normalized() + solution.B * solution.z.segment<2>(3)).normalized();
+  }
+  alignment.scale = 1.0 + solution.z[5];
+  const double scale_sigma = std::sqrt(solution.covariance(5, 5));
+  if (!metric && !(scale_sigma <= config.max_scale_sigma * alignment.scale)) return std::nullopt;
+  alignment.gravity_covariance = gravity_direction_covariance(
+      solve_on_tangent_plane(equations, alignment.gravity_w), gravity, config.accel_bias_sigma);
+  alignment.first_velocity_w = solution.z.head<3>();
   return alignment;
 }
 
@@ -166,7 +197,7 @@ constexpr double kGravityGate = 13.8;
 /// Covariance of the tangent vector of gravity. A change du of its direction u is the rotation u x du.
 Eigen::Matrix2d tangent_covariance(const Eigen::Vector3d& gravity_w, const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix<double, 2, 3> J = gravity_basis(gravity_w).transpose() * skew(gravity_w.normalized());
-  return J * covariance * J.transpose();
+  return propagate(J, covariance);
 }
 
 /// Whether a measured gravity contradicts the gravity of the window.
@@ -191,35 +222,6 @@ Eigen::Quaterniond restore_attitude(const Pose& anchor, Window& window) {
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 2> orthogonal_vectors(const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d first = direction.unitOrthogonal();
-  Eigen::Matrix<double, 3, 2> vectors;
-  vectors << first, direction.normalized().cross(first);
-  return vectors;
-}
-
-// Inlined, it would be rounded differently in the alignment.
-[[gnu::noinline]] Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& A) {
-  return (A.transpose() * A).inverse();
-}
-
-Eigen::Matrix3d gravity_direction_covariance(const AlignmentEquations& equations,
-                                             const Eigen::Vector3d& gravity_w, double accel_bias_sigma) {
-  const double norm = gravity_w.norm();
-  const Eigen::Matrix<double, 3, 2> basis = orthogonal_vectors(gravity_w);
-  const Eigen::Index scale_columns = equations.A.cols() - 6;
-  Eigen::MatrixXd A(equations.A.rows(), 5 + scale_columns);
-  A << equations.A.leftCols<3>(), norm * equations.A.middleCols<3>(3) * basis,
-      equations.A.rightCols(scale_columns);
-  const Eigen::VectorXd y = equations.y - equations.A.middleCols<3>(3) * gravity_w;
-  const Eigen::MatrixXd covariance = least_squares_covariance(A);
-  const double variance =
-      (y - A * (covariance * (A.transpose() * y))).squaredNorm() / static_cast<double>(A.rows() - A.cols());
-  const double bias_variance = accel_bias_sigma * accel_bias_sigma / (norm * norm);
-  return basis * (variance * covariance.block<2, 2>(3, 3) + bias_variance * Eigen::Matrix2d::Identity()) *
-         basis.transpose();
-}
-
 void apply_alignment_to_frozen_world(const InertialAlignment& alignment, const Pose& anchor, Window& window) {
   const Eigen::Vector3d known_gravity_w = window.gravity_w;
   const bool known = window.gravity_covariance.has_value();
@@ -234,7 +236,7 @@ void apply_alignment_to_frozen_world(const InertialAlignment& alignment, const P
   }
   const Eigen::Matrix3d R = q_new_old.toRotationMatrix();
   const Eigen::Matrix2d covariance =
-      tangent_covariance(window.gravity_w, R * alignment.gravity_covariance * R.transpose());
+      tangent_covariance(window.gravity_w, propagate(R, alignment.gravity_covariance));
   const Eigen::Vector3d aligned = window.gravity_w;
   if (known) window.gravity_w = known_gravity_w;
   if (known && !contradicts(aligned, covariance, window)) return;

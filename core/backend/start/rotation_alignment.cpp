@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "core/geometry/covariance.h"
@@ -180,16 +179,17 @@ RotationAlignment RotationAligner::aligned(ImuBuffer& imu) const {
     found.time_offset_s += step[3];
     found.gyro_bias += step.tail<3>();
   }
-  found.covariance = normal_equations(found, imu).H.inverse().topLeftCorner<4, 4>();
+  const SquareMatrix<7> H = normal_equations(found, imu).H;
+  found.covariance = solve_symmetric<7, 7>(H, SquareMatrix<7>::Identity()).topLeftCorner<4, 4>();
   Eigen::Vector4d from_rig;
   from_rig << log_so3(q_b_c_.conjugate() * found.q_b_c), found.time_offset_s - time_offset_s_;
   Eigen::Matrix4d tolerated = found.covariance;
   tolerated.diagonal().head<3>().array() += rig_tolerance::kRotation_rad * rig_tolerance::kRotation_rad;
   tolerated(3, 3) += rig_tolerance::kTimeOffset_s * rig_tolerance::kTimeOffset_s;
-  found.rig_contradiction = from_rig.dot(tolerated.llt().solve(from_rig));
+  found.rig_contradiction = from_rig.dot(solve_symmetric(tolerated, from_rig));
   const Eigen::Vector3d turned = from_rig.head<3>();
   found.rotation_deviations =
-      std::sqrt(turned.dot(solve_symmetric<3>(tolerated.topLeftCorner<3, 3>(), turned)) / 3.0);
+      std::sqrt(turned.dot(solve_symmetric<3, 1>(tolerated.topLeftCorner<3, 3>(), turned)) / 3.0);
   found.is_certain = largest_sigma(found.covariance.topLeftCorner<3, 3>()) < kCertainRotation_rad &&
                      found.covariance(3, 3) < kCertainOffset_s * kCertainOffset_s;
   return found;
@@ -204,7 +204,7 @@ std::optional<RotationAlignment> RotationAligner::align_offset(RotationAlignment
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const NormalEquations equations = normal_equations(initial, imu);
     H = equations.H.bottomRightCorner<4, 4>();
-    const Eigen::Vector4d step = solve_symmetric<4>(H, equations.g.tail<4>());
+    const Eigen::Vector4d step = solve_symmetric<4, 1>(H, equations.g.tail<4>());
     initial.time_offset_s += step[0];
     initial.gyro_bias += step.tail<3>();
   }

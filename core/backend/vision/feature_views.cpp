@@ -6,6 +6,7 @@
 
 #include "core/backend/vision/vision_assessment.h"
 #include "core/config/monitor_config.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -91,7 +92,7 @@ std::optional<VisualPose> FeatureViews::pose_after(const VisualPose& before, std
   turn.topLeftCorner<3, 3>() = T_b_c.R();
   return VisualPose{.t = views_[to].t,
                     .T_w_b = before.T_w_b * (T_b_c * found * T_b_c.inverse()),
-                    .covariance = turn * T_bc.covariance * turn.transpose(),
+                    .covariance = propagate(turn, T_bc.covariance),
                     .features = vision.inliers};
 }
 

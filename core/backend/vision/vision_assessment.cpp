@@ -8,6 +8,7 @@
 
 #include "core/config/monitor_config.h"
 #include "core/geometry/covariance.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -26,7 +27,7 @@ struct BearingInformation {
     if (inliers < 3 || !factor.isInvertible()) return std::nullopt;
     Matrix6 J = Matrix6::Identity();
     J.topLeftCorner<3, 3>() = T_w_c.R();
-    return J * factor.inverse() * J.transpose();
+    return propagate(J, Matrix6(factor.inverse()));
   }
 };
 

@@ -17,12 +17,16 @@ void expect_solution() {
     std::srand(static_cast<unsigned>(seed));
     const SquareMatrix<N> root = SquareMatrix<N>::Random();
     const SquareMatrix<N> A = root * root.transpose();
-    const ColumnVector<N> b = ColumnVector<N>::Random();
+    const Eigen::Matrix<double, N, 2> b = Eigen::Matrix<double, N, 2>::Random();
     EXPECT_LT((A * solve_symmetric(A, b) - b).norm(), 1e-8) << N << " rows, seed " << seed;
+    const SquareMatrix<N> W = inverse_root(A);
+    EXPECT_LT((W * A * W.transpose() - SquareMatrix<N>::Identity()).norm(), 1e-8) << N << " rows";
+    const Eigen::Matrix<double, 2, N> J = Eigen::Matrix<double, 2, N>::Random();
+    EXPECT_LT((propagate(J, A) - J * A * J.transpose()).norm(), 1e-14) << N << " columns, seed " << seed;
   }
 }
 
-TEST(Decompositions, SolutionsSatisfyTheirEquations) {
+TEST(Decompositions, SolutionsRootsAndProductsSatisfyTheirEquations) {
   expect_solution<3>();
   expect_solution<4>();
   expect_solution<6>();
