@@ -172,6 +172,35 @@ Measurements measurements_of(const RunResult& result) {
           .device = run.device};
 }
 
+namespace {
+
+/// What explains errors against the ground truth. The trajectory follows all conventions, so apart from the
+/// scale it is the ground truth that does not, unless a fault was injected.
+std::vector<std::string> truth_warnings(const RunResult& result, bool has_faults) {
+  using enum eval::Convention;
+  std::vector<std::string> warnings;
+  for (const eval::ConventionFinding& finding :
+       eval::find_convention_violations(result.gt, result.run.trajectory)) {
+    const bool is_scale = finding.convention == kScale;
+    if (is_scale) warnings.push_back("trajectory: " + finding.message);
+    if (is_scale || has_faults || finding.convention == kSwappedArguments ||
+        finding.convention == kRepeatedPoses)
+      continue;
+    warnings.push_back("ground truth: compared with it, " + finding.message +
+                       "; `stillpoint diagnose` tests the ground truth");
+  }
+  const std::size_t pairs = result.score.ate ? result.score.ate->pairs : 0;
+  if (warnings.empty() && !result.gt.poses.empty() && 2 * pairs < result.score.poses) {
+    warnings.push_back(
+        fmt::format("ground truth: has a pose within 20 ms for {} of {} poses only; the errors "
+                    "are those of these",
+                    pairs, result.score.poses));
+  }
+  return warnings;
+}
+
+}  // namespace
+
 RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
                     std::span<const datasets::SensorFault> faults) {
   const std::size_t frames = std::min(run.summary.frames, info.frame_times.size());
@@ -185,14 +214,14 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
   result.notes = info.notes;
   result.warnings = warnings_of(info, run);
   result.gt = camera_truth(info, options.expected_times);
-  if (const auto scale = eval::find_wrong_scale(result.gt, run.trajectory))
-    result.warnings.push_back("trajectory: " + scale->message);
   result.score = eval::score(result.gt, run.trajectory, options);
   if (run.imu_rate) result.imu_rate = score_imu_rate(result.gt, *run.imu_rate, run.trajectory);
   if (run.loops) result.loops = score_loops(result.gt, run.trajectory, *run.loops);
   if (!faults.empty())
     result.honesty = eval::honesty(result.gt, run.claims, fault_spans(faults, options.expected_times));
   result.run = std::move(run);
+  for (std::string& warning : truth_warnings(result, !faults.empty()))
+    result.warnings.push_back(std::move(warning));
   return result;
 }
 

@@ -66,6 +66,25 @@ TEST(RunResult, WarnsOfAWrongScale) {
       << result.warnings.front();
 }
 
+TEST(RunResult, WarnsOfGroundTruthThatIsLateOrSparse) {
+  const datasets::SequenceInfo info = straight_sequence();
+  const OdometryRun run = perfect_run(info, kFrames);
+  datasets::SequenceInfo late = info;
+  std::vector<StampedPose>& poses = late.ground_truth.trajectory.poses;
+  for (StampedPose& pose : poses) pose.t = after(pose.t, 10.0 + 0.1);
+  const auto expect_warning = [&](const datasets::SequenceInfo& sequence, const char* text) {
+    const RunResult result = score_run(sequence, run);
+    ASSERT_EQ(result.warnings.size(), 1U) << text;
+    EXPECT_NE(result.warnings.front().find(text), std::string::npos) << result.warnings.front();
+  };
+  expect_warning(late, "ground truth: compared with it, the files do not overlap in time");
+  datasets::SequenceInfo sparse = info;
+  std::erase_if(sparse.ground_truth.trajectory.poses, [&](const StampedPose& pose) {
+    return pose.t.ns % 1'000'000'000 != info.frame_times.front().ns % 1'000'000'000;
+  });
+  expect_warning(sparse, "ground truth: has a pose within 20 ms for");
+}
+
 TEST(RunResult, OfAnInterruptedRunIsMarkedAndScoredOnProcessedFrames) {
   const datasets::SequenceInfo info = straight_sequence();
   OdometryRun run = perfect_run(info, 30);
