@@ -43,7 +43,8 @@ BEGIN {
   split("track,detect,tracking thread,dynamic,state opt,optim thread", names, ",")
   for (i = 1; i <= columns; ++i) { label[column[i]] = names[i]; of_label[names[i] " ms"] = column[i] }
   systems = split("VINS-Mono,VINS-RGBD,Dynamic-VINS", estimator, ",")
-  of_variant["baselines/vins_mono"] = estimator[1]; of_variant["baselines/vins_rgbd"] = estimator[2]; of_variant["dynamic_vins"] = estimator[3]
+  split("baselines/vins_mono+libraries,baselines/vins_rgbd+libraries,dynamic_vins+libraries", variants, ",")
+  for (i = 1; i <= systems; ++i) of_variant[variants[i]] = estimator[i]
   read_published()
 }
 /variant/ && !variant_field { for (i = 1; i <= NF; ++i) { name = trim($i); if (name == "variant") variant_field = i; if (name in of_label) field[of_label[name]] = i } }
@@ -52,7 +53,7 @@ variant_field && trim($variant_field) in of_variant {
 }
 END {
   own = estimator[3]
-  if (!((own, "tracking_thread") in measured)) { print "device_estimates: error: the table has no times of dynamic_vins" > "/dev/stderr"; exit 2 }
+  if (!((own, "tracking_thread") in measured)) { print "device_estimates: error: the table has no times of dynamic_vins+libraries" > "/dev/stderr"; exit 2 }
   for (calibration = 3; calibration <= 6; calibration += 3) {
     by = column[calibration]
     title("### One factor: " label[by] " of dynamic_vins")

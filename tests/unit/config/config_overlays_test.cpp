@@ -141,7 +141,6 @@ const std::vector<ChangedKey> kKeysOfStillpoint = {
     {"backend.keyframe_max_interval_s", "10.0", "0.5"},
     {"backend.pixel_sigma_px", "1.5", "0.25"},
     {"backend.pixel_noise_scale", "0.0", "1.0"},
-    {"backend.solver", "\"ceres\"", "\"schur\""},
     {"backend.max_iterations", "8", "4"},
     {"backend.gravity", "\"fixed\"", "\"estimated\""},
     {"backend.prior", "\"published\"", "\"consistent\""},
@@ -195,7 +194,7 @@ TEST(ConfigOverlays, DynamicVinsStatesEveryKeyOfItsMethods) {
 TEST(ConfigOverlays, LibrariesSelectsOpenCvTrackerAndCeresSolver) {
   EXPECT_EQ(changes("stillpoint", "libraries"),
             (Entries{{"frontend.tracker", "\"opencv\""}, {"backend.solver", "\"ceres\""}}));
-  EXPECT_EQ(changes("dynamic_vins", "libraries"), Entries{});
+  EXPECT_EQ(changes("dynamic_vins", "libraries"), (Entries{{"backend.solver", "\"ceres\""}}));
 }
 
 TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsContributions) {
