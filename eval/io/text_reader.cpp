@@ -338,23 +338,27 @@ bool has_decimal_comma(std::string_view word) {
   const std::size_t comma = word.find(',');
   if (comma == std::string_view::npos || comma == 0 || comma + 1 == word.size()) return false;
   return is_digit(word[comma - 1]) && is_digit(word[comma + 1]) &&
-         word.find_first_of(",.", comma + 1) == std::string_view::npos &&
-         word.find('.') == std::string_view::npos;
+         word.find(',', comma + 1) == std::string_view::npos && word.find('.') == std::string_view::npos;
 }
 
-/// Whether two or more values, separated by blanks or semicolons, have decimal commas, and none a decimal
-/// point.
+/// Whether every comma between numbers is a decimal comma. Two integers "1,5" are taken for one, too: no
+/// table with time stamps has rows of two integers.
 bool has_decimal_commas(std::string_view line) {
-  if (line.find(',') == std::string_view::npos || line.find('.') != std::string_view::npos) return false;
+  if (line.find(',') == std::string_view::npos) return false;
   constexpr std::string_view kBetween = " \t\r;";
-  int found = 0;
+  constexpr std::string_view kOfNumbers = "0123456789+-.,eE";  // other words, as paths, tell nothing
+  bool found = false;
   std::size_t begin = line.find_first_not_of(kBetween);
   while (begin != std::string_view::npos) {
     const std::size_t end = line.find_first_of(kBetween, begin);
-    found += has_decimal_comma(line.substr(begin, end - begin)) ? 1 : 0;
+    const std::string_view word = line.substr(begin, end - begin);
     begin = line.find_first_not_of(kBetween, end);
+    if (word.find(',') == std::string_view::npos) continue;
+    if (word.find_first_not_of(kOfNumbers) != std::string_view::npos) continue;
+    if (!has_decimal_comma(word)) return false;
+    found = true;
   }
-  return found >= 2;
+  return found;
 }
 
 std::string quoted(std::string_view field) {

@@ -47,15 +47,20 @@ TEST(RowReader, KeepsAnEmptyFieldInItsPlace) {
 }
 
 TEST(TextRow, NamesDecimalCommas) {
-  for (const std::string line : {"1,5 0,1 0,2 3", "1,5;0,1;0,2;3", "1403636579763555584;0,1;-0,2"}) {
+  for (const std::string line :
+       {"1,5 0,1 0,2 3", "1,5;0,1;0,2;3", "1403636579763555584;0,1;-0,2", "0,500000", "1,305031e+09",
+        "1.5;2,66;-0,09", "1700000000,05 rgb/1700000000.05.png", "1,5 a,b.png"}) {
     with_row(line + "\n", [](const TextRow& row) {
       expect_input_error([&] { static_cast<void>(row.time(0, TimeUnit::kSeconds)); },
                          {"a.txt:1", "decimal commas"});
     });
   }
-  with_row("1,5,0,1\n", [](const TextRow& row) {  // integers
-    EXPECT_EQ(row.time(0, TimeUnit::kSeconds), Timestamp{1'000'000'000});
-  });
+  for (const std::string line :
+       {"1,5,0,1", "1,5 ,0 ,1", "1, 5,0, 1", "1,5.png", "1,rgb/5.png", "1,2.5 3,4"}) {
+    with_row(line + "\n", [](const TextRow& row) {  // commas between fields
+      EXPECT_EQ(row.time(0, TimeUnit::kSeconds), Timestamp{1'000'000'000}) << row.content;
+    });
+  }
 }
 
 TEST(TextRow, NanosecondsMayHaveDecimalsThatAreZero) {
