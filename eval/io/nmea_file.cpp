@@ -89,6 +89,7 @@ std::string_view checked_sentence(std::string_view line) {
 struct Fix {
   double time_of_day_s = 0.0;
   GeodeticPosition position;
+  int day = 0;  ///< of a `DayCounter`
 };
 
 /// A GGA sentence; empty without a fix.
@@ -102,15 +103,47 @@ std::optional<Fix> parse_gga(const std::vector<std::string_view>& fields) {
   return Fix{*time, {*latitude, *longitude, *altitude + number(fields[11]).value_or(0.0)}};
 }
 
-/// Fixes of a text, and the date of the first RMC sentence.
+/// Counts the days of sentences, which state the time of day only.
+class DayCounter {
+ public:
+  /// The day of the next sentence, from 0 on. A time that is up to half a day earlier is out of order, one
+  /// that is even earlier is of the next day.
+  int advance_to(double time_of_day_s) {
+    const double back_s = previous_s_.value_or(time_of_day_s) - time_of_day_s;
+    day_ += static_cast<int>(std::lround(back_s / kSecondsPerDay));
+    previous_s_ = time_of_day_s;
+    return day_;
+  }
+
+ private:
+  int day_ = 0;
+  std::optional<double> previous_s_;
+};
+
+struct DatedTime {
+  int days = 0;  ///< since 1970
+  double time_of_day_s = 0.0;
+};
+
+/// A RMC sentence; nullopt if it is not valid.
+std::optional<DatedTime> parse_rmc(const std::vector<std::string_view>& fields) {
+  if (fields.size() <= 9 || fields[2] != "A") return std::nullopt;  // V: the date may be that of the firmware
+  const std::optional<int> days = date_days(fields[9]);
+  const std::optional<double> time = time_of_day_s(fields[1]);
+  if (!days || !time) return std::nullopt;
+  return DatedTime{*days, *time};
+}
+
+/// Fixes of a text, and the date of day 0.
 struct NmeaContent {
   std::vector<Fix> fixes;
-  std::optional<int> first_day;  ///< of the first fix
+  std::optional<int> first_day;  ///< by the first valid RMC, which may be after midnight
   std::size_t skipped = 0;
 };
 
 NmeaContent parse_sentences(std::string_view text) {
   NmeaContent content;
+  DayCounter days;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
@@ -120,11 +153,11 @@ NmeaContent parse_sentences(std::string_view text) {
     const std::vector<std::string_view> fields = split(checked_sentence(line));
     const bool is_known = fields.front().size() == 5;
     if (is_known && fields.front().ends_with("RMC")) {
-      const bool is_valid =
-          fields.size() > 9 && fields[2] == "A";  // V: not valid, the date may be that of the firmware
-      if (!content.first_day && is_valid) content.first_day = date_days(fields[9]);
+      const std::optional<DatedTime> date = content.first_day ? std::nullopt : parse_rmc(fields);
+      if (date) content.first_day = date->days - days.advance_to(date->time_of_day_s);
     } else if (is_known && fields.front().ends_with("GGA")) {
-      const std::optional<Fix> fix = parse_gga(fields);
+      std::optional<Fix> fix = parse_gga(fields);
+      if (fix) fix->day = days.advance_to(fix->time_of_day_s);
       if (fix) content.fixes.push_back(*fix);
       content.skipped += fix ? 0 : 1;
     } else if (!is_known) {
@@ -187,13 +220,9 @@ LoadedTrajectory parse_nmea(std::string_view text, const std::string& name) {
   LoadedTrajectory loaded;
   loaded.trajectory.frame = kGnssFrame;
   loaded.repairs.skipped = content.skipped;
-  double day_s = kSecondsPerDay * *content.first_day;
-  double previous_s = content.fixes.front().time_of_day_s;
   for (const Fix& fix : content.fixes) {
-    if (fix.time_of_day_s < previous_s - 0.5 * kSecondsPerDay) day_s += kSecondsPerDay;  // midnight
-    previous_s = fix.time_of_day_s;
     StampedPose pose;
-    pose.t = from_seconds(day_s + fix.time_of_day_s);
+    pose.t = from_seconds(kSecondsPerDay * (*content.first_day + fix.day) + fix.time_of_day_s);
     pose.T_w_f.p = east_north_up(fix.position, content.fixes.front().position);
     const bool is_later = loaded.trajectory.poses.empty() || loaded.trajectory.poses.back().t < pose.t;
     if (is_later) loaded.trajectory.poses.push_back(pose);

@@ -60,6 +60,22 @@ TEST(NmeaFile, ContinuesAfterMidnight) {
   EXPECT_EQ(loaded.trajectory.poses[1].t.ns - loaded.trajectory.poses[0].t.ns, 2'000'000'000);
 }
 
+TEST(NmeaFile, TheFirstDateMayBeOnTheOtherSideOfMidnight) {
+  const std::string before = "$GPGGA,235959,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,\n";
+  const std::string after = "$GPGGA,000001,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,\n";
+  const std::string date_after = "$GPRMC,000001,A,4807.038,N,01131.000,E,022.4,084.4,240394,003.1,W\n";
+  const std::string date_before = "$GPRMC,235958,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W\n";
+  for (const std::string& text : {before + after + date_after, before + date_after + after,
+                                  date_before + before + after, date_before + after}) {
+    // date -u -d "1994-03-24 00:00:01" +%s
+    EXPECT_EQ(parse_nmea(text, "f").trajectory.poses.back().t.ns, 764467201'000'000'000) << text;
+  }
+  const std::string late =
+      before + after + "$GPGGA,235959.5,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,\n";
+  const LoadedTrajectory loaded = parse_nmea(late + date_after, "f");  // a row out of order begins no day
+  EXPECT_EQ(loaded.trajectory.poses.back().t.ns, 764467201'000'000'000);
+}
+
 TEST(NmeaFile, RejectsTextsWithoutPositionOrDate) {
   expect_input_error([] { static_cast<void>(parse_nmea(kDate, "f")); }, {"f", "GGA"});
   expect_input_error([] { static_cast<void>(parse_nmea(kFirst, "f")); }, {"f", "RMC"});
