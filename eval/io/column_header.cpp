@@ -162,12 +162,14 @@ std::optional<TimeUnit> time_unit(const TableHeader& header, std::string_view fi
   const std::optional<std::size_t> column = time_column(header);
   if (!column) return std::nullopt;
   const auto& [name, unit] = header.columns[*column];
-  if (unit.starts_with("ns") || unit.starts_with("nano") || name == "ns" || name == "nsec" ||
-      name.starts_with("nano") || name.ends_with("_ns") || name.ends_with("_nsec"))
-    return TimeUnit::kNanoseconds;
-  if (unit == "s" || unit.starts_with("sec")) return TimeUnit::kSeconds;
-  if (unit.starts_with("us") || unit.starts_with("mic") || unit.starts_with("ms") ||
-      unit.starts_with("mil") || name.ends_with("_us") || name.ends_with("_ms")) {
+  const std::string_view word =
+      unit.empty() ? std::string_view(name).substr(name.find_last_of("_.-/ ") + 1) : std::string_view(unit);
+  const auto is = [word](const std::string& prefix, std::string_view letters) {
+    return word == letters || word.starts_with(std::string(letters) + "ec") || word.starts_with(prefix);
+  };
+  if (is("nano", "ns")) return TimeUnit::kNanoseconds;
+  if (word == "s" || word.starts_with("sec")) return TimeUnit::kSeconds;
+  if (is("mic", "us") || is("mil", "ms")) {
     throw InputError(std::string(file), header.line,
                      "the stamps are in " + (unit.empty() ? name : unit) + "; convert them to s or ns");
   }

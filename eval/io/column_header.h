@@ -39,7 +39,8 @@ enum class Quantity { kPosition, kQuaternion, kAngularVelocity, kAcceleration };
 /// each.
 [[nodiscard]] std::optional<std::size_t> time_column(const TableHeader& header);
 
-/// Unit of the column of time stamps: by the unit behind its name, or a name that ends with "ns".
+/// Unit of the column of time stamps: in brackets behind its name, or the last word of the name ("time_ns",
+/// "timestamp_nanoseconds").
 /// @param header of the file
 /// @param file name of the file, for messages
 /// @return nullopt if the header states none

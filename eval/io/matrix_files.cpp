@@ -110,6 +110,7 @@ LoadedTrajectory parse_kitti(std::string_view poses, const std::string& poses_na
   }
   if (next < stamps.size()) throw InputError(times_name, "has more times than " + poses_name + " has poses");
   builder.require_poses(poses_name);
+  builder.require_plausible_stamps(times_name);
   return builder.release();
 }
 

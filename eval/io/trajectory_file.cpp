@@ -120,6 +120,31 @@ void TrajectoryBuilder::require_poses(const std::string& file) const {
                              : "no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
 }
 
+void TrajectoryBuilder::require_plausible_stamps(const std::string& file) const {
+  constexpr double kMaxInterval = 3600.0;   // [s]
+  constexpr double kMinNanoseconds = 5e6;   // 5 s of microseconds: no system is as slow
+  constexpr double kMaxMicroseconds = 5e5;  // 0.5 ms of nanoseconds: no system is as fast
+  const std::vector<StampedPose>& poses = loaded_.trajectory.poses;
+  if (poses.size() < 3) return;
+  const auto count = static_cast<double>(poses.size() - 1);
+  if (seconds_between(poses.front().t, poses.back().t) < 0.5 * kMaxInterval * count) return;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    intervals.push_back(seconds_between(poses[i - 1].t, poses[i].t));
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  if (*middle <= kMaxInterval) return;
+  const char* const unit = *middle > kMinNanoseconds    ? "nanoseconds"
+                           : *middle < kMaxMicroseconds ? "microseconds"
+                                                        : "microseconds or nanoseconds";
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "as seconds, the stamps are %.3g s apart: they seem to be in %s; convert them to seconds, or "
+                "name nanoseconds in the header (\"timestamp [ns]\")",
+                *middle, unit);
+  throw InputError(file, text);
+}
+
 namespace {
 
 constexpr std::size_t kMinNanosecondDigits = 16;  // 10^15 ns are 11 days; 10^15 s would be 30 million years
@@ -140,12 +165,17 @@ constexpr RowFormat kTum{TimeUnit::kSeconds, QuaternionOrder::kXyzw, "t tx ty tz
 constexpr RowFormat kEuroc{TimeUnit::kNanoseconds, QuaternionOrder::kWxyz, "ns,px,py,pz,qw,qx,qy,qz"};
 constexpr RowFormat kOrbSlam3{TimeUnit::kNanoseconds, QuaternionOrder::kXyzw, "ns tx ty tz qx qy qz qw"};
 
+/// Whether the first row has commas or semicolons between its fields.
+bool is_delimited(std::string_view text, const std::string& name) {
+  RowReader rows(text, name);
+  const std::optional<TextRow> first = rows.next();
+  return first && first->content.find_first_of(",;") != std::string_view::npos;
+}
+
 /// Of rows with stamps in nanoseconds: without names of the columns, the separator tells which program wrote
 /// them.
 const RowFormat& nanosecond_format(std::string_view text, const std::string& name) {
-  RowReader rows(text, name);
-  const std::optional<TextRow> first = rows.next();
-  return first && first->content.find(',') != std::string_view::npos ? kEuroc : kOrbSlam3;
+  return is_delimited(text, name) ? kEuroc : kOrbSlam3;
 }
 
 /// A text, or the first records of one, and the name of its file.
@@ -246,7 +276,10 @@ LoadedTrajectory parse_rows(const NamedText& start, RowReader all, const RowRule
     const Timestamp t = row.time(layout.time, layout.unit);
     builder.add(row, t, parse_pose(row, layout.pose, rules.check));
   });
-  faults.guard([&] { builder.require_poses(start.name); });
+  faults.guard([&] {
+    builder.require_poses(start.name);
+    builder.require_plausible_stamps(start.name);
+  });
   LoadedTrajectory loaded = builder.release();
   loaded.order = layout.is_named ? QuaternionOrder::kXyzw : rules.format.order;
   loaded.order_source = layout.is_named ? OrderSource::kNamed : OrderSource::kFormat;
@@ -432,6 +465,17 @@ LoadedTrajectory parse_detected_nanoseconds(TextBlocks& file, const std::string&
   return loaded;
 }
 
+/// Rows with stamps in seconds. The order of quaternions is that of the TUM format, which has blanks between
+/// the fields: systems that write commas have either order.
+LoadedTrajectory parse_detected_seconds(TextBlocks& file, const std::string& name) {
+  FaultLog strict;
+  const bool has_delimiters = is_delimited(file.block(), name);
+  LoadedTrajectory loaded = parse_file(file, name, {kTum}, strict);
+  if (has_delimiters && loaded.order_source == OrderSource::kFormat)
+    loaded.order_source = OrderSource::kAssumed;
+  return loaded;
+}
+
 }  // namespace
 
 LoadedTrajectory read_trajectory(const TrajectorySource& source) {
@@ -449,7 +493,7 @@ LoadedTrajectory read_trajectory(const TrajectorySource& source) {
   FaultLog strict;
   switch (format) {
     case TrajectoryFormat::kTum:
-      return parse_file(file, name, {kTum}, strict);
+      return source.format ? parse_file(file, name, {kTum}, strict) : parse_detected_seconds(file, name);
     case TrajectoryFormat::kEuroc:
       return source.format ? parse_file(file, name, {kEuroc}, strict)
                            : parse_detected_nanoseconds(file, name);

@@ -86,7 +86,8 @@ struct TrajectorySource {
 /// file with a "key: value" line is OpenLORIS; a header that names stamps in nanoseconds, or a stamp with 16
 /// digits or more, is EuRoC; rows of 12 numbers without a header are KITTI; other rows are TUM. Rows with
 /// nanoseconds and without a header are written with qw first and commas by EuRoC tools, and with qx first
-/// and blanks by ORB-SLAM3: the order follows from the separator, and is marked as assumed.
+/// and blanks by ORB-SLAM3: the order follows from the separator, and is marked as assumed. So is that of TUM
+/// rows with commas: VINS-Fusion writes qw first.
 /// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
 /// sequence number
 [[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
@@ -169,6 +170,10 @@ class TrajectoryBuilder {
   /// @param file its name, for messages
   /// @throws InputError if no pose was added
   void require_poses(const std::string& file) const;
+
+  /// @param file with the stamps, for messages
+  /// @throws InputError if half of the poses are further than an hour from the next one
+  void require_plausible_stamps(const std::string& file) const;
 
   [[nodiscard]] LoadedTrajectory release() { return std::move(loaded_); }
 

@@ -139,6 +139,8 @@ TEST(Formats, ColumnsAreReadByTheNamesInTheHeader) {
            {"#timestamp,x,y,z,qw,qx,qy,qz,vx", {"t", "x", "y", "z", "qw", "qx", "qy", "qz", "-"}, false},
            {"# timestamp tx ty tz qw qx qy qz", wxyz, false},
            {"# written by a tool at noon\n# time[s] x[m] y[m] z[m] qw qx qy qz", wxyz, false},
+           {"timestamp_nanoseconds,x,y,z,qx,qy,qz,qw", xyzw, true},
+           {"time_nsec,x,y,z,qx,qy,qz,qw", xyzw, true},
            {",time_ns,qw,qx,qy,qz,tx,ty,tz", {"-", "t", "qw", "qx", "qy", "qz", "x", "y", "z"}, true},
            {"%time,field.header.seq,field.pose.position.x,field.pose.position.y,field.pose.position.z,"
             "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,"
@@ -160,7 +162,8 @@ TEST(Formats, AHeaderThatNamesNoPoseIsAnError) {
   const TemporaryFolder folder;
   for (const std::string header :
        {"time,a,b,c,d,e,f,g", "t,x,y,z,roll,pitch,yaw,w", "t,x,x,z,qx,qy,qz,qw", "x,y,z,qx,qy,qz,qw,speed",
-        "header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw", "t (ms),x,y,z,qx,qy,qz,qw"}) {
+        "header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw", "t (ms),x,y,z,qx,qy,qz,qw",
+        "timestamp_usec,x,y,z,qx,qy,qz,qw,speed", "time_milliseconds,x,y,z,qx,qy,qz,qw,speed"}) {
     const auto file = folder.write("named.csv", header + "\n1,0,0,0,0,0,0,1,0\n2,0,0,0,0,0,0,1,0\n");
     SCOPED_TRACE(header);
     expect_input_error([&] { static_cast<void>(read_trajectory({.path = file})); }, {"named.csv:1"});
@@ -180,6 +183,25 @@ TEST(Formats, NanosecondsWithoutAHeaderHaveAnAssumedOrder) {
   EXPECT_EQ(commas.order_source, OrderSource::kAssumed);
   expect_same(with_other_order(with_other_order(kPath, QuaternionOrder::kWxyz), QuaternionOrder::kXyzw),
               kPath);
+}
+
+TEST(Formats, SecondsWithCommasAndWithoutAHeaderHaveAnAssumedOrder) {
+  const TemporaryFolder folder;
+  const auto source_of = [&](const std::string& row, std::optional<TrajectoryFormat> format = std::nullopt) {
+    return read_trajectory({.path = folder.write("rows.txt", row), .format = format}).order_source;
+  };
+  EXPECT_EQ(source_of("1.5,1,2,3,0,0,0,1\n"), OrderSource::kAssumed);
+  EXPECT_EQ(source_of("1.5;1;2;3;0;0;0;1\n"), OrderSource::kAssumed);
+  EXPECT_EQ(source_of("1.5 1 2 3 0 0 0 1\n"), OrderSource::kFormat);
+  EXPECT_EQ(source_of("1.5,1,2,3,0,0,0,1\n", TrajectoryFormat::kTum), OrderSource::kFormat);
+  EXPECT_EQ(source_of("t,x,y,z,qw,qx,qy,qz\n1.5,1,2,3,1,0,0,0\n"), OrderSource::kNamed);
+}
+
+TEST(Formats, TimesInAnotherUnitAreNamedWithTheirFile) {
+  std::string poses;
+  for (int i = 0; i < 3; ++i) poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  expect_input_error([&] { static_cast<void>(parse_kitti(poses, "p", "0\n50000000\n100000000\n", "t")); },
+                     {"t: as seconds", "nanoseconds"});
 }
 
 TEST(Openloris, DropsRepeatedPosesUnlessTheyAreRequested) {

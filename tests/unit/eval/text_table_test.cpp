@@ -96,6 +96,20 @@ TEST(TextRow, TimesInTheWrongUnitAreErrorsWithAHint) {
   });
 }
 
+TEST(TextRow, TheUnitOfALargeStampFollowsFromItsSize) {
+  for (const auto& [stamp, unit] : {std::pair("9250000000", "nano"),
+                                    {"1700000000000", "milli"},
+                                    {"20000000000000", "nano"},
+                                    {"1700000000000000", "micro"},
+                                    {"20000000000000000", "nano"},
+                                    {"1700000000000000000", "nano"}}) {
+    with_row(std::string(stamp) + "\n", [unit = unit](const TextRow& row) {
+      expect_input_error([&] { static_cast<void>(row.time(0, TimeUnit::kSeconds)); },
+                         {std::string("is it in ") + unit + "seconds"});
+    });
+  }
+}
+
 TEST(TextRow, DistinguishesRepeatedFromDecreasingTimestamps) {
   with_row("2\n", [](const TextRow& row) {
     expect_input_error([&] { row.require_increasing(Timestamp{5}, Timestamp{5}); }, {"a.txt:1", "repeats"});

@@ -109,6 +109,25 @@ TEST(ParseTum, RejectsRowsThatAreFurtherOutOfOrder) {
             "split it if it contains several runs");
 }
 
+/// Ten rows whose stamps are whole numbers.
+std::string rows_apart(long long interval) {
+  std::string text;
+  for (int i = 0; i < 10; ++i) text += std::to_string(i * interval) + " 0 0 0 0 0 0 1\n";
+  return text;
+}
+
+TEST(ParseTum, StampsThatAreHoursApartAreInAnotherUnit) {
+  EXPECT_NE(message_of(rows_apart(50'000'000))
+                .find("a.txt: as seconds, the stamps are 5e+07 s apart: they "
+                      "seem to be in nanoseconds"),
+            std::string::npos);
+  EXPECT_NE(message_of(rows_apart(50'000)).find("seem to be in microseconds;"), std::string::npos);
+  EXPECT_NE(message_of(rows_apart(1'000'000)).find("in microseconds or nanoseconds"), std::string::npos);
+  EXPECT_EQ(message_of(rows_apart(3600)), "no error");
+  EXPECT_EQ(message_of("0 0 0 0 0 0 0 1\n1500000000 0 0 0 0 0 0 1\n1500000001 0 0 0 0 0 0 1\n"),
+            "no error");  // a first pose without a stamp
+}
+
 TEST(RepairTexts, NameEachKindOfRepairedRow) {
   EXPECT_TRUE(repair_texts({}).empty());
   const std::vector<std::string> texts = repair_texts({.skipped = 1, .repeated = 2, .reordered = 3});
