@@ -440,27 +440,33 @@ namespace {
 
 /// @throws InputError if poses are closer in time than systems report them: stamps in microseconds since 1970
 /// have 16 digits, too
-void require_plausible_nanoseconds(const LoadedTrajectory& loaded, const std::string& name) {
+void require_plausible_nanoseconds(const LoadedTrajectory& loaded, const std::string& name, bool is_stated) {
   constexpr double kMinInterval = 5e-4;  // [s]
+  // Of stamps with 16 digits without a unit: keyframes in microseconds that are up to 10 s apart. Those of a
+  // clock that runs since 12 to 115 days, at more than 100 Hz, have to state the unit.
+  constexpr double kMinUnstatedInterval = 1e-2;  // [s]
+  constexpr std::int64_t kMax16Digits = 9'999'999'999'999'999;
   const std::vector<StampedPose>& poses = loaded.trajectory.poses;
   if (poses.size() < 2) return;
   const double interval_s =
       seconds_between(poses.front().t, poses.back().t) / static_cast<double>(poses.size() - 1);
-  if (interval_s >= kMinInterval) return;
-  char text[160];
+  const bool is_ambiguous = !is_stated && poses.back().t.ns <= kMax16Digits;
+  if (interval_s >= (is_ambiguous ? kMinUnstatedInterval : kMinInterval)) return;
+  char text[200];
   std::snprintf(
       text, sizeof text,
       "as nanoseconds, the stamps are %.3g ms apart: they seem to be in microseconds; convert them to "
-      "seconds or nanoseconds",
-      1e3 * interval_s);
+      "seconds or nanoseconds%s",
+      1e3 * interval_s, is_ambiguous ? ", or name nanoseconds in a header (\"timestamp [ns]\")" : "");
   throw InputError(name, text);
 }
 
 /// Rows with stamps in nanoseconds that were recognized by these.
 LoadedTrajectory parse_detected_nanoseconds(TextBlocks& file, const std::string& name) {
   FaultLog strict;
+  const bool is_stated = time_unit(find_header(file.block()), name).has_value();
   LoadedTrajectory loaded = parse_file(file, name, {nanosecond_format(file.block(), name)}, strict);
-  require_plausible_nanoseconds(loaded, name);
+  require_plausible_nanoseconds(loaded, name, is_stated);
   if (loaded.order_source == OrderSource::kFormat) loaded.order_source = OrderSource::kAssumed;
   return loaded;
 }

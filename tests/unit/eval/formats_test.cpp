@@ -185,6 +185,28 @@ TEST(Formats, NanosecondsWithoutAHeaderHaveAnAssumedOrder) {
               kPath);
 }
 
+TEST(Formats, MicrosecondsAreNotTakenForNanoseconds) {
+  const TemporaryFolder folder;
+  const auto rows = [](std::int64_t first, std::int64_t interval) {
+    std::string text;
+    for (int i = 0; i < 5; ++i) text += std::to_string(first + i * interval) + " 1 2 3 0 0 0 1\n";
+    return text;
+  };
+  constexpr std::int64_t kMicroseconds = 1305031100000000;  // since 1970; as nanoseconds, 15 days
+  for (const std::int64_t interval : {50'000, 1'000'000, 5'000'000}) {
+    const auto file = folder.write("us.txt", rows(kMicroseconds, interval));
+    expect_input_error([&] { static_cast<void>(read_trajectory({.path = file})); },
+                       {"us.txt: as nanoseconds, the stamps are", "seem to be in microseconds"});
+  }
+  const auto fast = folder.write("fast.txt", rows(1'000 * kMicroseconds, 1'000'000));  // 1 kHz
+  EXPECT_EQ(read_trajectory({.path = fast}).trajectory.poses.size(), 5U);
+  const auto slow = folder.write("uptime.txt", rows(kMicroseconds, 33'000'000));  // 30 Hz
+  EXPECT_EQ(read_trajectory({.path = slow}).trajectory.poses.size(), 5U);
+  const auto named =
+      folder.write("named.txt", "# t[ns] x y z qx qy qz qw\n" + rows(kMicroseconds, 5'000'000));
+  EXPECT_EQ(read_trajectory({.path = named}).trajectory.poses.size(), 5U);
+}
+
 TEST(Formats, SecondsWithCommasAndWithoutAHeaderHaveAnAssumedOrder) {
   const TemporaryFolder folder;
   const auto source_of = [&](const std::string& row, std::optional<TrajectoryFormat> format = std::nullopt) {
