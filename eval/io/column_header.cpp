@@ -148,14 +148,23 @@ TableHeader find_header(std::string_view text) {
 }
 
 std::optional<std::size_t> time_column(const TableHeader& header) {
-  std::optional<std::size_t> found;
+  constexpr std::array<std::string_view, 5> kNanoseconds{"nsec", "nsecs", "nanosec", "nanosecs",
+                                                         "nanoseconds"};
+  std::optional<std::size_t> first;
+  std::optional<std::size_t> of_header;
+  bool has_seconds = false;
+  bool has_fraction = false;
   for (std::size_t i = 0; i < header.columns.size(); ++i) {
     const std::string& name = header.columns[i].name;
-    const bool is_fraction = name.ends_with("nsec") || name.ends_with("nsecs") || name.ends_with("nanosec");
-    if (found && is_fraction) return std::nullopt;  // seconds and nanoseconds in two columns
-    if (!found && is_time(name)) found = i;
+    const bool is_fraction = std::any_of(kNanoseconds.begin(), kNanoseconds.end(),
+                                         [&](std::string_view ending) { return name.ends_with(ending); });
+    if (!is_fraction && !is_time(name)) continue;
+    (is_fraction ? has_fraction : has_seconds) = true;
+    if (!first) first = i;
+    if (!of_header && contains(name, "header")) of_header = i;
   }
-  return found;
+  if (has_seconds && has_fraction) return std::nullopt;
+  return of_header ? of_header : first;
 }
 
 std::optional<TimeUnit> time_unit(const TableHeader& header, std::string_view file) {
@@ -199,7 +208,8 @@ bool fits_rows(const TableHeader& header, std::string_view text) {
   RowReader rows(text, "");
   while (const std::optional<TextRow> row = rows.next()) {
     if (row->line > header.line)
-      return row->fields.size() == header.columns.size() || time_column(header) == std::size_t{0};
+      return row->fields.size() == header.columns.size() ||
+             (!header.columns.empty() && is_time(header.columns.front().name));
   }
   return false;
 }

@@ -35,8 +35,9 @@ struct TableHeader {
 /// Vectors that the columns of a table may have.
 enum class Quantity { kPosition, kQuaternion, kAngularVelocity, kAcceleration };
 
-/// Index of the first column of time stamps; nullopt without one, or if seconds and nanoseconds have a column
-/// each.
+/// Index of the column of time stamps: that of the message header (`field.header.stamp`) rather than that of
+/// the reception (`%time` of rostopic), else the first; nullopt without one, or if seconds and nanoseconds
+/// have a column each.
 [[nodiscard]] std::optional<std::size_t> time_column(const TableHeader& header);
 
 /// Unit of the column of time stamps: in brackets behind its name, or the last word of the name ("time_ns",

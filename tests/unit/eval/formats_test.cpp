@@ -147,6 +147,9 @@ TEST(Formats, ColumnsAreReadByTheNamesInTheHeader) {
             "field.pose.orientation.w",
             {"t", "-", "x", "y", "z", "qx", "qy", "qz", "qw"},
             false},
+           {"%time,field.header.stamp,x,y,z,qx,qy,qz,qw",  // reception, measurement
+            {"-", "t", "x", "y", "z", "qx", "qy", "qz", "qw"},
+            true},
            {"t,x,y,z,vx,vy,vz,qw,qx,qy,qz,bgx",
             {"t", "x", "y", "z", "-", "-", "-", "qw", "qx", "qy", "qz", "-"},
             false}}) {
@@ -163,6 +166,7 @@ TEST(Formats, AHeaderThatNamesNoPoseIsAnError) {
   for (const std::string header :
        {"time,a,b,c,d,e,f,g", "t,x,y,z,roll,pitch,yaw,w", "t,x,x,z,qx,qy,qz,qw", "x,y,z,qx,qy,qz,qw,speed",
         "header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw", "t (ms),x,y,z,qx,qy,qz,qw",
+        "header.stamp.nanosec,header.stamp.sec,x,y,z,qx,qy,qz,qw", "sec,nanoseconds,x,y,z,qx,qy,qz,qw",
         "timestamp_usec,x,y,z,qx,qy,qz,qw,speed", "time_milliseconds,x,y,z,qx,qy,qz,qw,speed"}) {
     const auto file = folder.write("named.csv", header + "\n1,0,0,0,0,0,0,1,0\n2,0,0,0,0,0,0,1,0\n");
     SCOPED_TRACE(header);
