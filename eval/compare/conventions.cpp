@@ -117,22 +117,34 @@ std::string format_message(const char* format, Values... values) {
 
 double span_s(const Trajectory& path) { return seconds_between(path.poses.front().t, path.poses.back().t); }
 
-/// Whether all stamps are whole seconds, and few: those of a program that counts milliseconds.
-bool has_sparse_whole_seconds(const Trajectory& path) {
-  constexpr double kMinInterval = 5.0;  // [s]
+double interval_s(const Trajectory& path) {
+  return span_s(path) / static_cast<double>(path.poses.size() - 1);
+}
+
+/// Whether all stamps are whole numbers, as frame numbers are, and no seconds since 1970.
+bool has_small_whole_numbers(const Trajectory& path) {
   constexpr std::int64_t kSecond = 1'000'000'000;
-  return span_s(path) >= kMinInterval * static_cast<double>(path.poses.size() - 1) &&
+  constexpr std::int64_t kMaxNumber = 100'000'000;  // of 30 frames/s in 38 days
+  return path.poses.back().t.ns / kSecond < kMaxNumber &&
          std::ranges::all_of(path.poses, [](const StampedPose& pose) { return pose.t.ns % kSecond == 0; });
 }
 
+/// Stamps in both files that are plausible as seconds only for a system that is far slower than a camera.
+std::optional<ConventionFinding> slow_stamps(const Trajectory& gt, const Trajectory& est) {
+  constexpr double kMinInterval = 5.0;  // [s]
+  const bool is_slow = interval_s(gt) >= kMinInterval && interval_s(est) >= kMinInterval;
+  const bool is_counted = est.poses.size() >= kMinMatches && has_small_whole_numbers(est);
+  if (!is_slow && !is_counted) return std::nullopt;
+  return ConventionFinding{
+      Convention::kStampUnit,
+      format_message(
+          "%s, one pose per %.3g s: if these are %s, convert them to seconds, since validity and "
+          "intervals of poses are in seconds",
+          is_counted ? "the estimate has whole numbers as stamps" : "the stamps of both files are sparse",
+          interval_s(est), is_counted ? "frame numbers or milliseconds" : "milliseconds")};
+}
+
 std::optional<ConventionFinding> stamp_unit(const Trajectory& gt, const Trajectory& est) {
-  if (has_sparse_whole_seconds(gt) && has_sparse_whole_seconds(est)) {
-    return ConventionFinding{Convention::kStampUnit,
-                             format_message("both files have whole seconds as stamps, one pose per %.3g s: "
-                                            "if these are milliseconds, convert "
-                                            "them, since validity and intervals of poses are in seconds",
-                                            span_s(est) / static_cast<double>(est.poses.size() - 1))};
-  }
   struct Unit {
     double ratio;
     const char* name;
@@ -157,7 +169,7 @@ std::optional<ConventionFinding> stamp_unit(const Trajectory& gt, const Trajecto
             "epoch and the sequence",
             seconds_between(gt.poses.front().t, est.poses.front().t))};
   }
-  return std::nullopt;
+  return slow_stamps(gt, est);
 }
 
 double position_rmse(MatchView matches, Alignment kind) {

@@ -38,8 +38,21 @@ TEST(Conventions, DetectMillisecondsInBothFiles) {
   Trajectory gt = kGt;
   for (StampedPose& pose : gt.poses) pose.t.ns *= 1000;  // one pose per 10 ms, read as 10 s
   EXPECT_EQ(violations(gt, gt), std::vector{Convention::kStampUnit});
-  for (StampedPose& pose : gt.poses) pose.t.ns += 500'000'000;  // no whole seconds
-  EXPECT_TRUE(violations(gt, gt).empty());
+  for (StampedPose& pose : gt.poses) pose.t.ns += 417'000'000;  // with decimals
+  EXPECT_EQ(violations(gt, gt), std::vector{Convention::kStampUnit});
+}
+
+TEST(Conventions, DetectFrameNumbersAsStamps) {
+  const auto numbered = [](std::int64_t first, std::int64_t step) {
+    Trajectory path = test::smooth_path(200, 0.05);
+    for (std::size_t i = 0; i < path.poses.size(); ++i)
+      path.poses[i].t.ns = (first + step * static_cast<std::int64_t>(i)) * 1'000'000'000;
+    return path;
+  };
+  EXPECT_EQ(violations(numbered(0, 1), numbered(0, 1)), std::vector{Convention::kStampUnit});
+  EXPECT_EQ(violations(numbered(0, 3), numbered(0, 3)), std::vector{Convention::kStampUnit});
+  // a GNSS receiver at 1 Hz
+  EXPECT_TRUE(violations(numbered(1'700'000'000, 1), numbered(1'700'000'000, 1)).empty());
 }
 
 TEST(Conventions, DetectASwappedQuaternionOrder) {
