@@ -54,8 +54,12 @@ PoseFile truth_of_sequence(const std::string& name) {
   const datasets::GroundTruth& truth = stream->info().ground_truth;
   if (truth.trajectory.poses.empty())
     throw InputError(name, "is a sequence without ground truth; give a file of true poses");
-  return {.path = name,
-          .loaded = {.trajectory = eval::move_to_frame(truth.trajectory, truth.T_c_f.inverse(), "camera")}};
+  PoseFile file{
+      .path = name,
+      .loaded = {.trajectory = eval::move_to_frame(truth.trajectory, truth.T_c_f.inverse(), "camera")}};
+  // Poses of the camera are the rows of a file, whose columns may have another order than its format states.
+  if (truth.T_c_f.matrix().isIdentity()) file.loaded.order_source = eval::OrderSource::kFormat;
+  return file;
 }
 
 PoseFile load(const PoseFilePaths& paths, const std::string& named, FileRole role) {
@@ -154,8 +158,9 @@ eval::QuaternionOrder other(eval::QuaternionOrder order) {
 }
 
 /// The file read in the other order of quaternions.
+/// @param doubt behind the message of an error
 /// @throws InputError if its header or format states the order in which it was read
-PoseFile in_other_order(PoseFile file, const eval::OrderFinding& finding) {
+PoseFile in_other_order(PoseFile file, const eval::OrderFinding& finding, const char* doubt) {
   const eval::QuaternionOrder found = other(file.loaded.order);
   const std::string reason = fmt::format(
       "the quaternions are consistent with those of the other file in the order {}: R.RPE {:.3f} "
@@ -165,10 +170,10 @@ PoseFile in_other_order(PoseFile file, const eval::OrderFinding& finding) {
     throw InputError(
         file.path,
         fmt::format("{}, but {} states {}; reorder the columns, or name them in a first "
-                    "line such as \"# t tx ty tz {}\"",
+                    "line such as \"# t tx ty tz {}\"{}",
                     reason,
                     file.loaded.order_source == eval::OrderSource::kNamed ? "the header" : "the format",
-                    order_text(file.loaded.order), order_text(found)));
+                    order_text(file.loaded.order), order_text(found), doubt));
   }
   spdlog::warn("{}: {}; read so", file.path, reason);
   file.loaded.trajectory = eval::with_other_order(file.loaded.trajectory, file.loaded.order);
@@ -185,8 +190,12 @@ std::vector<PoseFile> with_consistent_orders(std::vector<PoseFile> files, double
     const auto finding = eval::find_quaternion_order(truth.loaded, files[i].loaded, offset_s);
     if (!finding) continue;
     if (finding->gt && i > 1) truth.loaded.order_source = eval::OrderSource::kFormat;  // the first one agrees
-    if (finding->gt) truth = in_other_order(std::move(truth), *finding);
-    if (finding->est) files[i] = in_other_order(std::move(files[i]), *finding);
+    // The quaternions of bags and sequences in another body frame are not read in the other order.
+    const char* const doubt = truth.loaded.order_source == eval::OrderSource::kNone
+                                  ? "; if this order is right, the orientations of the ground truth are wrong"
+                                  : "";
+    if (finding->gt) truth = in_other_order(std::move(truth), *finding, "");
+    if (finding->est) files[i] = in_other_order(std::move(files[i]), *finding, doubt);
   }
   for (const PoseFile& file : files) warn_of_assumed_order(file);
   return files;
