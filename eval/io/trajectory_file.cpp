@@ -121,6 +121,15 @@ void TrajectoryBuilder::require_poses(const std::string& file) const {
 }
 
 void TrajectoryBuilder::require_plausible_stamps(const std::string& file) const {
+  const std::size_t kept = loaded_.trajectory.poses.size();
+  const std::size_t repeated = loaded_.repairs.repeated;
+  constexpr std::size_t kMostRowsPerStamp = 5;
+  if (kept > 0 && kept + repeated > kMostRowsPerStamp * kept) {
+    throw InputError(file, rows_text(kept + repeated) + " have " + std::to_string(kept) +
+                               (kept == 1 ? " stamp (" : " different stamps (the first: ") +
+                               format_stamp(loaded_.trajectory.poses.front().t) +
+                               " s); if they lost digits, as in 1.30503e+09, write them with 9 decimals");
+  }
   constexpr double kMaxInterval = 3600.0;   // [s]
   constexpr double kMinNanoseconds = 5e6;   // 5 s of microseconds: no system is as slow
   constexpr double kMaxMicroseconds = 5e5;  // 0.5 ms of nanoseconds: no system is as fast
@@ -241,6 +250,16 @@ struct RowRules {
   PoseCheck check = PoseCheck::kEstimate;
 };
 
+/// Whether the numbers of a row from `first` on are the three rows of a rigid transformation.
+bool is_matrix(const TextRow& row, std::size_t first, double tolerance) {
+  Eigen::Matrix3d R;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j)
+      R(i, j) = parse_number(row.fields[first + static_cast<std::size_t>(4 * i + j)]).value_or(2.0);
+  }
+  return (R * R.transpose()).isIdentity(tolerance);
+}
+
 /// Rows of a matrix, with or without the stamp and the last row 0 0 0 1, may look like a pose: [1 0 0 | x]
 /// would be read as a position, and the quaternion after it has norm 1 for a small x.
 /// @throws InputError if the numbers of a row without names are those of a rigid transformation
@@ -248,17 +267,20 @@ void require_no_matrix(const TextRow& row) {
   constexpr double kTolerance = 1e-3;
   const std::size_t count = row.fields.size();
   if (count != 13 && count != 16 && count != 17) return;
-  const std::size_t first = count == 16 ? 0 : 1;
-  Eigen::Matrix3d R;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j)
-      R(i, j) = parse_number(row.fields[first + static_cast<std::size_t>(4 * i + j)]).value_or(2.0);
-  }
-  if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance) return;
+  if (!is_matrix(row, count == 16 ? 0 : 1, kTolerance)) return;
   throw row.error(
       "has " + std::to_string(count) +
       " numbers, which are a matrix; write rows \"t tx ty tz qx qy qz qw\", or the first three rows "
       "of each matrix as 12 numbers (KITTI) and the stamps in another file (--times)");
+}
+
+/// Whether a row of 12 numbers is a stamp, a pose and four further columns, not a matrix.
+bool is_pose_of_twelve(const TextRow& row) {
+  constexpr double kMatrixTolerance = 0.3;  // a matrix that is rounded or scaled is an error of its own
+  Eigen::Vector4d q;
+  for (Eigen::Index i = 0; i < 4; ++i)
+    q(i) = parse_number(row.fields[static_cast<std::size_t>(4 + i)]).value_or(0.0);
+  return std::abs(q.norm() - 1.0) <= kNormTolerance && !is_matrix(row, 0, kMatrixTolerance);
 }
 
 /// @param start the first records, by which the layout is found
@@ -430,7 +452,7 @@ TrajectoryFormat detect_format(std::string_view text, const std::string& name) {
     if (!header.is_comment && row->line == header.line) continue;
     if (is_key_line(row->content)) return TrajectoryFormat::kOpenloris;
     if (row->fields.size() > time && is_nanoseconds(row->fields[time])) return TrajectoryFormat::kEuroc;
-    if (row->fields.size() == 12 && !has_names) return TrajectoryFormat::kKitti;
+    if (row->fields.size() == 12 && !has_names && !is_pose_of_twelve(*row)) return TrajectoryFormat::kKitti;
     return TrajectoryFormat::kTum;
   }
   return TrajectoryFormat::kTum;

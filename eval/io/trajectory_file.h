@@ -84,10 +84,11 @@ struct TrajectorySource {
 
 /// Reads a trajectory. Format detection: a folder is 7-Scenes; a file that begins with a sentence is NMEA; a
 /// file with a "key: value" line is OpenLORIS; a header that names stamps in nanoseconds, or a stamp with 16
-/// digits or more, is EuRoC; rows of 12 numbers without a header are KITTI; other rows are TUM. Rows with
-/// nanoseconds and without a header are written with qw first and commas by EuRoC tools, and with qx first
-/// and blanks by ORB-SLAM3: the order follows from the separator, and is marked as assumed. So is that of TUM
-/// rows with commas: VINS-Fusion writes qw first.
+/// digits or more, is EuRoC; rows of 12 numbers without a header are KITTI, unless the fifth to the eighth
+/// are a quaternion and the first eleven no matrix; other rows are TUM. Rows with nanoseconds and without a
+/// header are written with qw first and commas by EuRoC tools, and with qx first and blanks by ORB-SLAM3: the
+/// order follows from the separator, and is marked as assumed. So is that of TUM rows with commas:
+/// VINS-Fusion writes qw first.
 /// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
 /// sequence number
 [[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
@@ -172,7 +173,8 @@ class TrajectoryBuilder {
   void require_poses(const std::string& file) const;
 
   /// @param file with the stamps, for messages
-  /// @throws InputError if half of the poses are further than an hour from the next one
+  /// @throws InputError if half of the poses are further than an hour from the next one, or there are more
+  /// than five rows per stamp
   void require_plausible_stamps(const std::string& file) const;
 
   [[nodiscard]] LoadedTrajectory release() { return std::move(loaded_); }

@@ -102,6 +102,9 @@ TEST(Formats, AreDetectedFromTheContent) {
   EXPECT_EQ(detect_format(format_euroc(kPath)), TrajectoryFormat::kEuroc);
   EXPECT_EQ(detect_format(format_kitti(kPath).poses), TrajectoryFormat::kKitti);
   EXPECT_EQ(detect_format("scene: home\nseq: 1\n"), TrajectoryFormat::kOpenloris);
+  EXPECT_EQ(detect_format("1305031100.5 1 2 3 0.6 0 0 0.8 0.1 0.2 0.3 1\n"), TrajectoryFormat::kTum);
+  EXPECT_EQ(detect_format("1 0 0 0 0 1 0 0.01 0 0 1 0\n"), TrajectoryFormat::kKitti);    // 0 1 0 0.01: norm 1
+  EXPECT_EQ(detect_format("1.1 0 0 0 0 1 0 0.01 0 0 1 0\n"), TrajectoryFormat::kKitti);  // no rotation
 }
 
 /// The columns of `kPath` under the names of a header; "-" becomes a further column.

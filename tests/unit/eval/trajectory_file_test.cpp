@@ -128,6 +128,14 @@ TEST(ParseTum, StampsThatAreHoursApartAreInAnotherUnit) {
             "no error");  // a first pose without a stamp
 }
 
+TEST(ParseTum, StampsThatLostTheirDigitsAreAnError) {
+  std::string rows;
+  for (int i = 0; i < 6; ++i) rows += "1.30503e+09 " + std::to_string(i) + " 0 0 0 0 0 1\n";
+  EXPECT_NE(message_of(rows).find("a.txt: 6 rows have 1 stamp (1305030000.000000000 s); if they lost digits"),
+            std::string::npos);
+  EXPECT_EQ(message_of(rows + "1.30504e+09 0 0 0 0 0 0 1\n"), "no error");  // 3.5 rows per stamp
+}
+
 TEST(RepairTexts, NameEachKindOfRepairedRow) {
   EXPECT_TRUE(repair_texts({}).empty());
   const std::vector<std::string> texts = repair_texts({.skipped = 1, .repeated = 2, .reordered = 3});
