@@ -403,10 +403,10 @@ Timestamp TextRow::time(std::size_t field, TimeUnit unit) const {
   if (const double number = parse_number(found).value_or(0.0); number > 1.0) {
     // Milliseconds since 1970 are 1e11 to 5e12 from 1973 to 2128, microseconds a thousand times as many;
     // other numbers are nanoseconds, since 1970 or the start of the recording.
-    const char* const unit = number >= 1e11 && number < 5e12   ? "milli"
-                             : number >= 1e14 && number < 5e15 ? "micro"
-                                                               : "nano";
-    throw error("stamp " + quoted(found) + " exceeds 292 years; is it in " + unit +
+    const char* const likely_unit = number >= 1e11 && number < 5e12   ? "milli"
+                                    : number >= 1e14 && number < 5e15 ? "micro"
+                                                                      : "nano";
+    throw error("stamp " + quoted(found) + " exceeds 292 years; is it in " + likely_unit +
                 "seconds? convert it to seconds");
   }
   if (found.starts_with('"'))

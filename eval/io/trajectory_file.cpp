@@ -140,7 +140,7 @@ void TrajectoryBuilder::require_plausible_stamps(const std::string& file) const 
   std::vector<double> intervals;
   for (std::size_t i = 1; i < poses.size(); ++i)
     intervals.push_back(seconds_between(poses[i - 1].t, poses[i].t));
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>((intervals.size() - 1) / 2);
   std::nth_element(intervals.begin(), middle, intervals.end());
   if (*middle <= kMaxInterval) return;
   const char* const unit = *middle > kMinNanoseconds    ? "nanoseconds"
