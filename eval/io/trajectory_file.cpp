@@ -506,18 +506,11 @@ LoadedTrajectory parse_detected_seconds(TextBlocks& file, const std::string& nam
 
 }  // namespace
 
-LoadedTrajectory read_trajectory(const TrajectorySource& source) {
-  if (is_bag(source.path))
-    throw InputError(source.path.string(), "is a bag; name the topic of the poses, e.g. " +
-                                               source.path.string() + ":/ground_truth");
-  std::error_code ignored;
-  const bool is_folder = std::filesystem::is_directory(source.path, ignored);
-  if (source.format == TrajectoryFormat::kSevenScenes || (!source.format && is_folder)) {
-    return read_seven_scenes(source.path);
-  }
-  TextBlocks file(source.path);
+namespace {
+
+/// @param format of the file, a format of rows or sentences
+LoadedTrajectory read_text(const TrajectorySource& source, TextBlocks& file, TrajectoryFormat format) {
   const std::string name = source.path.string();
-  const TrajectoryFormat format = source.format ? *source.format : detect_format(file.block(), name);
   FaultLog strict;
   switch (format) {
     case TrajectoryFormat::kTum:
@@ -536,6 +529,25 @@ LoadedTrajectory read_trajectory(const TrajectorySource& source) {
     default:
       return parse_nmea(read_text_file(source.path), name);
   }
+}
+
+}  // namespace
+
+LoadedTrajectory read_trajectory(const TrajectorySource& source) {
+  if (is_bag(source.path))
+    throw InputError(source.path.string(), "is a bag; name the topic of the poses, e.g. " +
+                                               source.path.string() + ":/ground_truth");
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(source.path, ignored);
+  if (source.format == TrajectoryFormat::kSevenScenes || (!source.format && is_folder)) {
+    return read_seven_scenes(source.path);
+  }
+  TextBlocks file(source.path);
+  const TrajectoryFormat format =
+      source.format ? *source.format : detect_format(file.block(), source.path.string());
+  LoadedTrajectory loaded = read_text(source, file, format);
+  loaded.format = format;
+  return loaded;
 }
 
 }  // namespace stillpoint::eval

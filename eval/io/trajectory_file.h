@@ -50,21 +50,6 @@ enum class OrderSource {
   kAssumed,  ///< nothing in the file tells
 };
 
-/// Contents of a trajectory file.
-struct LoadedTrajectory {
-  Trajectory trajectory;
-  RowRepairs repairs;
-  QuaternionOrder order = QuaternionOrder::kXyzw;  ///< in which the file was read
-  OrderSource order_source = OrderSource::kNone;
-};
-
-/// The trajectory as if its quaternions had been read in the other order.
-[[nodiscard]] Trajectory with_other_order(const Trajectory& trajectory, QuaternionOrder read);
-
-/// Whether the path is a bag by its name: a file .bag, .mcap or .db3, or a folder with metadata.yaml and one
-/// of these files, as `ros2 bag` writes it.
-[[nodiscard]] bool is_bag(const std::filesystem::path& path);
-
 enum class TrajectoryFormat { kTum, kEuroc, kKitti, kOpenloris, kSevenScenes, kNmea };
 constexpr auto enum_names(TrajectoryFormat) {
   return EnumNames<TrajectoryFormat, 6>{{{TrajectoryFormat::kTum, "tum"},
@@ -74,6 +59,22 @@ constexpr auto enum_names(TrajectoryFormat) {
                                          {TrajectoryFormat::kSevenScenes, "7scenes"},
                                          {TrajectoryFormat::kNmea, "nmea"}}};
 }
+
+/// Contents of a trajectory file.
+struct LoadedTrajectory {
+  Trajectory trajectory;
+  RowRepairs repairs;
+  QuaternionOrder order = QuaternionOrder::kXyzw;  ///< in which the file was read
+  OrderSource order_source = OrderSource::kNone;
+  std::optional<TrajectoryFormat> format = std::nullopt;  ///< of `read_trajectory`; nullopt of other readers
+};
+
+/// The trajectory as if its quaternions had been read in the other order.
+[[nodiscard]] Trajectory with_other_order(const Trajectory& trajectory, QuaternionOrder read);
+
+/// Whether the path is a bag by its name: a file .bag, .mcap or .db3, or a folder with metadata.yaml and one
+/// of these files, as `ros2 bag` writes it.
+[[nodiscard]] bool is_bag(const std::filesystem::path& path);
 
 struct TrajectorySource {
   std::filesystem::path path;

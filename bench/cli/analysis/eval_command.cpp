@@ -4,9 +4,12 @@
 #include <filesystem>
 #include <future>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -214,6 +217,23 @@ OutputRules output_rules(const EvalArguments& arguments) {
   return rules;
 }
 
+/// @throws InputError if two outputs are the same file: the later one would replace the earlier one
+void require_different_outputs(const EvalArguments& arguments) {
+  std::map<std::filesystem::path, const char*> known;
+  for (const auto& [option, file] : {std::pair("--plot", &arguments.plot),
+                                     {"--map", &arguments.map},
+                                     {"--per-pose", &arguments.per_pose}}) {
+    if (file->empty()) continue;
+    std::error_code ignored;
+    const auto absolute = std::filesystem::absolute(*file);  // of files that do not exist, too
+    const auto path = std::filesystem::weakly_canonical(absolute, ignored);
+    const auto [earlier, is_new] = known.emplace(ignored ? absolute : path, option);
+    if (!is_new)
+      throw InputError(option,
+                       fmt::format("{} is the file of {}, too; choose another one", *file, earlier->second));
+  }
+}
+
 /// @throws InputError if it is not determined
 eval::TimeOffset time_offset_of(const Trajectory& gt, const report::EvaluatedRun& run) {
   const std::optional<eval::TimeOffset> found = eval::find_time_offset(gt, run.est);
@@ -229,6 +249,7 @@ int evaluate_files(const EvalArguments& arguments) {
   }
   const OutputRules rules = output_rules(arguments);
   static_cast<void>(protocol_options(arguments));  // refuses options before the files are read
+  require_different_outputs(arguments);
   require_figures(arguments, rules);
   if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
   std::vector<PoseFile> files = with_consistent_orders(read_pose_files(arguments.files), arguments.offset_s);

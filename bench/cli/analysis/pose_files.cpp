@@ -7,6 +7,7 @@
 #include <future>
 #include <iterator>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -130,11 +131,29 @@ void warn_of_assumed_order(const PoseFile& file) {
                order_text(file.loaded.order));
 }
 
+/// @throws InputError for an option that changes none of the files
+void require_used_options(const PoseFilePaths& paths, std::span<const PoseFile> files) {
+  const auto is_unused = [&](eval::TrajectoryFormat format) {
+    return std::ranges::none_of(files, [&](const PoseFile& file) { return file.loaded.format == format; });
+  };
+  if (!paths.times.empty() && is_unused(eval::TrajectoryFormat::kKitti)) {
+    throw InputError("--times", fmt::format("gives the stamps of KITTI poses, and {} has its own; omit it",
+                                            files.back().path));
+  }
+  if (paths.sequence != 0 && is_unused(eval::TrajectoryFormat::kOpenloris)) {
+    throw InputError("--seq", fmt::format("selects a sequence of an OpenLORIS file, which {} is not; omit it",
+                                          files.back().path));
+  }
+}
+
 }  // namespace
 
 PoseFile read_pose_file(const PoseFilePaths& paths, const std::string& path, FileRole role) {
   PoseFile file = load(paths, path, role);
-  if (role == FileRole::kEstimate) file.covariances = covariances_of(paths, file);
+  if (role == FileRole::kEstimate) {
+    require_used_options(paths, {&file, 1});
+    file.covariances = covariances_of(paths, file);
+  }
   log_repairs(file);
   warn_of_assumed_order(file);
   return file;
@@ -147,6 +166,7 @@ std::vector<PoseFile> read_pose_files(const PoseFilePaths& paths) {
       std::async(std::launch::async, [&] { return load_estimates(paths); });
   std::vector<PoseFile> files{load(paths, paths.ground_truth, FileRole::kTruth)};
   std::ranges::move(estimates.get(), std::back_inserter(files));
+  require_used_options(paths, files);
   for (const PoseFile& file : files) log_repairs(file);
   return files;
 }

@@ -33,14 +33,16 @@ struct PoseFile {
 /// Reads the ground truth, and meanwhile the estimates: for long files, reading is most of the work. Skipped
 /// and sorted rows are logged.
 /// @return the ground truth first
-/// @throws InputError of the first file with a problem, or for one covariance file and several estimates
+/// @throws InputError of the first file with a problem, for one covariance file and several estimates, or for
+/// times or a sequence number that no file needs
 [[nodiscard]] std::vector<PoseFile> read_pose_files(const PoseFilePaths& paths);
 
 enum class FileRole { kTruth, kEstimate };
 
 /// Reads one file; an estimate with its covariances. Skipped and sorted rows, and an order of quaternions
 /// that nothing states, are logged.
-/// @throws InputError for unreadable or malformed input
+/// @throws InputError for unreadable or malformed input, or for times or a sequence number that an estimate
+/// does not need
 [[nodiscard]] PoseFile read_pose_file(const PoseFilePaths& paths, const std::string& path, FileRole role);
 
 /// The files, ground truth first, with their quaternions in the order in which they are consistent.

@@ -146,12 +146,15 @@ void write_kitti(const PoseOutput& output, const Trajectory& trajectory, const O
 
 /// Checks the output before the work begins.
 /// @param inputs that must not be replaced; empty ones are ignored
-/// @throws InputError without a path, for an unknown format, or as `require_safe_output`
+/// @throws InputError without a path, for an unknown format, for a topic of a file that is no bag, or as
+/// `require_safe_output`
 void require_pose_output(const PoseOutput& output, const std::vector<std::string>& inputs) {
   const PoseFileFormat format = format_of(output);
   const OutputRules rules = rules_of(output, inputs);
   const fs::path file = target_of(output.path).bag;
   const bool is_bag = format == PoseFileFormat::kBag || format == PoseFileFormat::kOdometry;
+  if (!is_bag && file != output.path)
+    throw InputError(output.path, "names a topic, which only bags have; omit it, or add --to bag");
   const bool is_folder = is_bag && file.extension() != ".bag" && file.extension() != ".mcap";
   if (is_folder && fs::exists(file))
     throw InputError(file.string(), "already exists; choose another name for the folder of a bag");
