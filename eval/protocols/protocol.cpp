@@ -136,6 +136,17 @@ RpeEvaluation evo_rpe(MatchView matches, const ProtocolOptions& options) {
   return result;
 }
 
+constexpr double kStrictMaxGap = 0.11;  // [s], to each neighbor in the ground truth
+
+/// Median interval of the ground truth [s]; 0 for fewer than two poses.
+double gt_interval_s(const Trajectory& trajectory) {
+  std::vector<double> intervals;
+  intervals.reserve(trajectory.poses.size());
+  for (std::size_t i = 1; i < trajectory.poses.size(); ++i)
+    intervals.push_back(seconds_between(trajectory.poses[i - 1].t, trajectory.poses[i].t));
+  return percentile(intervals, 0.5).value_or(0.0);
+}
+
 RpeEvaluation tum_rpe(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
   const std::optional<RpeResult> relative =
@@ -158,6 +169,20 @@ RpeEvaluation tum_rpe(const EvaluationInput& input) {
   return result;
 }
 
+/// The RPE of the tool compares with the closest ground truth up to two of its intervals away, where the ATE
+/// has a limit of 20 ms: the error contains the motion in between.
+void note_sparse_ground_truth(Evaluation& evaluation, const EvaluationInput& input) {
+  const double interval_s = gt_interval_s(input.gt);
+  if (interval_s <= kStrictMaxGap || evaluation.pairs == input.est.poses.size()) return;
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "the ground truth has one pose per %.3g s: RPE compares poses with one up to %.3g s away; see "
+      "strict:se3",
+      interval_s, 0.5 * interval_s);
+  evaluation.notes.emplace_back(text);
+}
+
 Evaluation evaluate_compat_tum(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
   const auto absolute = [&] {
@@ -167,7 +192,9 @@ Evaluation evaluate_compat_tum(const EvaluationInput& input) {
     return matches.size() < kMinMatchedPoses ? without_errors(matches)
                                              : ate_evaluation(aligned(matches, options), options);
   };
-  return with_rpe(absolute(), tum_rpe(input));
+  Evaluation evaluation = with_rpe(absolute(), tum_rpe(input));
+  if (evaluation.rpe_pairs > 0) note_sparse_ground_truth(evaluation, input);
+  return evaluation;
 }
 
 Evaluation evaluate_compat_evo(const EvaluationInput& input) {
@@ -225,17 +252,7 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
   return evaluation;
 }
 
-constexpr double kMaxHold = 1.0;        // [s], validity of a pose
-constexpr double kStrictMaxGap = 0.11;  // [s], to each neighbor in the ground truth
-
-/// Median interval of the ground truth [s]; 0 for fewer than two poses.
-double gt_interval_s(const Trajectory& trajectory) {
-  std::vector<double> intervals;
-  intervals.reserve(trajectory.poses.size());
-  for (std::size_t i = 1; i < trajectory.poses.size(); ++i)
-    intervals.push_back(seconds_between(trajectory.poses[i - 1].t, trajectory.poses[i].t));
-  return percentile(intervals, 0.5).value_or(0.0);
-}
+constexpr double kMaxHold = 1.0;  // [s], validity of a pose
 
 /// What was not compared, and over which intervals the ground truth is interpolated.
 std::vector<std::string> association_notes(const EvaluationInput& input, std::size_t matches) {

@@ -233,6 +233,16 @@ TEST(SlowGroundTruth, IsInterpolatedByTheStrictProtocolsIfAskedTo) {
   EXPECT_TRUE(has_note(evaluation, "interpolated over 1 s"));
 }
 
+TEST(SlowGroundTruth, IsNotedWhereTheRpeOfTheToolTakesTheClosestPose) {
+  const Trajectory gt = circle(0, 60, 1.0);
+  EXPECT_TRUE(
+      has_note(evaluate_with("compat:tum", gt, circle(0.037, 59.9, 0.1)),
+               "the ground truth has one pose per 1 s: RPE compares poses with one up to 0.5 s away"));
+  EXPECT_FALSE(has_note(evaluate_with("compat:tum", gt, circle(0.0, 59.0, 1.0)), "RPE compares"));
+  EXPECT_FALSE(
+      has_note(evaluate_with("compat:tum", circle(0, 60, 0.1), circle(0.037, 59.9, 0.1)), "RPE compares"));
+}
+
 TEST(OnePose, HasNoErrorsAndIsNotCorrect) {
   const Trajectory gt = circle(0, 50, 0.01);
   const Trajectory one = circle(0, 0, 0.1);
