@@ -24,9 +24,9 @@ constexpr double kCidDepthUnitsPerM = 1000.0;
 /// The images of a folder whose names are times in seconds, sorted by time.
 std::vector<StampedFile> stamped_images(const std::filesystem::path& folder) {
   std::vector<StampedFile> images;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::optional<Timestamp> t = eval::parse_stamp(entry.path().stem().string());
-    if (t && entry.path().extension() == ".png") images.push_back({.t = *t, .file = entry.path()});
+  for (const std::filesystem::path& file : visible_files(folder)) {
+    const std::optional<Timestamp> t = eval::parse_stamp(file.stem().string());
+    if (t && file.extension() == ".png") images.push_back({.t = *t, .file = file});
   }
   std::ranges::sort(images, {}, &StampedFile::t);
   if (images.empty())

@@ -30,13 +30,6 @@ bool is_image(const std::filesystem::path& file) {
          extension == ".tiff" || extension == ".exr";
 }
 
-std::vector<std::filesystem::path> sorted_files(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 /// What the names of image files tell about time.
 enum class NameKind { kStamp, kNumber, kOther };
 
@@ -77,10 +70,10 @@ std::optional<Timestamp> stamp_of(const std::string& stem) {
   return Timestamp{ns};
 }
 
-/// One kind of name for all images: stamps, numbers behind a common text, or their order in the alphabet.
+/// One kind of name for all images: stamps, numbers behind a common text, or their natural order.
 NamedImages named_images(const std::filesystem::path& folder) {
   NamedImages named;
-  std::vector<std::filesystem::path> files = sorted_files(folder);
+  std::vector<std::filesystem::path> files = visible_files(folder);
   std::erase_if(files, [](const std::filesystem::path& file) { return !is_image(file); });
   const auto all = [&](const auto& is) { return !files.empty() && std::ranges::all_of(files, is); };
   const auto stem = [](const std::filesystem::path& file) { return file.stem().string(); };
@@ -193,7 +186,7 @@ SequenceContent read_folder(const std::filesystem::path& folder, FaultLog& fault
   content.info.folder = folder;
   const NameKind names = add_folder_images(content);
   add_other_sensors(content, names, faults);
-  for (const std::filesystem::path& file : sorted_files(folder)) {
+  for (const std::filesystem::path& file : visible_files(folder)) {
     if (file.extension() != ".json") continue;
     content.info.rig.camera = read_camera(file);
     content.info.notes.push_back("calibration: " + file.filename().string());

@@ -61,8 +61,8 @@ Pose mirrored(const Pose& T_w_c) {
 
 /// livingRoomN.gt.freiburg or trajN.gt.freiburg: rows of TUM with the frame number instead of the time.
 std::optional<std::filesystem::path> ground_truth_file(const std::filesystem::path& folder) {
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".freiburg") return entry.path();
+  for (const std::filesystem::path& file : visible_files(folder)) {
+    if (file.extension() == ".freiburg") return file;
   }
   const std::filesystem::path file = folder / "groundtruth.txt";
   return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;

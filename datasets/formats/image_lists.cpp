@@ -1,9 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/formats/image_lists.h"
 
+#include <algorithm>
+#include <cctype>
 #include <string>
+#include <utility>
 
 namespace stillpoint::datasets {
+namespace {
+
+/// A text whose bytes compare as the natural order of the name: before each number, its count of digits.
+std::string natural_key(const std::string& name) {
+  const auto is_digit = [](unsigned char letter) { return std::isdigit(letter) != 0; };
+  std::string key;
+  for (auto at = name.begin(); at != name.end();) {
+    const auto end = std::find_if_not(at, name.end(), is_digit);
+    if (end == at) {
+      key += *at++;
+      continue;
+    }
+    const auto first = std::find_if(at, end, [](char digit) { return digit != '0'; });
+    key += static_cast<char>(end - first);
+    key.append(first, end);
+    at = end;
+  }
+  return key;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> visible_files(const std::filesystem::path& folder) {
+  std::vector<std::pair<std::string, std::filesystem::path>> by_key;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.')) by_key.emplace_back(natural_key(name), entry.path());
+  }
+  std::ranges::sort(by_key);
+  std::vector<std::filesystem::path> files;
+  files.reserve(by_key.size());
+  for (auto& [key, file] : by_key) files.push_back(std::move(file));
+  return files;
+}
 
 std::vector<StampedFile> read_image_list(const std::filesystem::path& list, const std::filesystem::path& root,
                                          eval::TimeUnit unit, FaultLog& faults) {

@@ -15,6 +15,11 @@
 
 namespace stillpoint::datasets {
 
+/// The entries of a folder in natural order: runs of digits are compared as numbers, "frame9" < "frame10".
+/// Without hidden files, whose names begin with ".": macOS adds "._5.png" to "5.png", which is no image.
+/// @throws std::filesystem::filesystem_error if the folder cannot be read
+[[nodiscard]] std::vector<std::filesystem::path> visible_files(const std::filesystem::path& folder);
+
 struct StampedFile {
   Timestamp t;
   std::filesystem::path file;

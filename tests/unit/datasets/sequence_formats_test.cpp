@@ -317,7 +317,9 @@ TEST(FolderFormat, OrdersNamesByTheirNumbersAndTakesTimesFromThem) {
          {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
         {{"1700000000050", "1700000000100", "1700000000150"},
          {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
-        {{"a", "b", "c"}, {0, 33'333'333, 66'666'667}}}) {
+        {{"a", "b", "c"}, {0, 33'333'333, 66'666'667}},
+        {{"9_383", "10_417", "11_450"}, {0, 33'333'333, 66'666'667}},
+        {{"a_9", "a_10", "b_2"}, {0, 33'333'333, 66'666'667}}}) {
     const TemporaryFolder folder;
     write_named_folder(folder, names);
     const auto stream = open_sequence(folder.path());
@@ -328,6 +330,16 @@ TEST(FolderFormat, OrdersNamesByTheirNumbersAndTakesTimesFromThem) {
       EXPECT_EQ(stream->load_frame(i).depth.at<std::uint16_t>(0, 0), 1000 * (i + 1));
     }
   }
+}
+
+TEST(FolderFormat, HiddenFilesAreNoImagesAndNoCameras) {
+  const TemporaryFolder folder;
+  write_named_folder(folder, {"2", "9", "10"});
+  folder.write("color/._9.png", "resource fork");
+  folder.write("._camera.json", "resource fork");
+  const SequenceInfo info = open_sequence(folder.path())->info();
+  EXPECT_EQ(info.frame_times, (std::vector<Timestamp>{{66'666'667}, {300'000'000}, {333'333'333}}));
+  EXPECT_EQ(info.rig.camera.fy, 11.0);
 }
 
 TEST(FolderFormat, ReadsInertialSamplesAndGroundTruthIfTheNamesAreTimes) {
