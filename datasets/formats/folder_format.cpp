@@ -2,12 +2,16 @@
 /// Plain image folders: color/NAME.{png,jpg} and depth/NAME.png, pinhole calibration as JSON. Names are
 /// numbers of frames, or times, with which imu.txt, imu.csv and groundtruth.txt are read.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -19,8 +23,6 @@
 
 namespace stillpoint::datasets {
 namespace {
-
-constexpr std::int64_t kFramesPerSecond = 30;
 
 bool is_image(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -44,53 +46,129 @@ struct NamedImages {
   std::vector<NamedImage> images;
 };
 
-/// "12" of "frame_0012": the number at the end of a name, and the text in front of it.
-struct NumberedName {
-  std::string prefix;
-  std::int64_t number = 0;
+/// A name as texts and the numbers between them: "frame10_1.5" has the texts "frame", "_", "" and the numbers
+/// "10", "1.5".
+struct NameParts {
+  std::vector<std::string> texts{""};
+  std::vector<std::string> numbers;
 };
 
-std::optional<NumberedName> numbered_name(const std::string& stem) {
-  const std::size_t last = stem.find_last_not_of("0123456789");
-  const std::size_t begin = last == std::string::npos ? 0 : last + 1;
-  NumberedName name{.prefix = stem.substr(0, begin)};
-  const auto [end, error] = std::from_chars(stem.data() + begin, stem.data() + stem.size(), name.number);
-  if (error != std::errc() || end != stem.data() + stem.size()) return std::nullopt;
-  return name;
+NameParts parts_of(const std::string& name) {
+  const auto digits_end = [&](std::size_t begin) {
+    return std::min(name.find_first_not_of("0123456789", begin), name.size());
+  };
+  NameParts parts;
+  for (std::size_t at = 0; at < name.size();) {
+    std::size_t end = digits_end(at);
+    if (end == at) {
+      parts.texts.back() += name[at++];
+      continue;
+    }
+    if (end < name.size() && name[end] == '.' && digits_end(end + 1) > end + 1) end = digits_end(end + 1);
+    parts.numbers.push_back(name.substr(at, end - at));
+    parts.texts.emplace_back();
+    at = end;
+  }
+  return parts;
 }
 
-/// Seconds with decimals, or an integer that is too large for the number of a frame: s, ms, us or ns since
-/// 1970.
-std::optional<Timestamp> stamp_of(const std::string& stem) {
-  if (stem.find('.') != std::string::npos) return eval::parse_stamp(stem);
-  const std::optional<Timestamp> integer = eval::parse_nanoseconds(stem);
-  if (!integer || integer->ns < 1'000'000'000) return std::nullopt;
-  std::int64_t ns = integer->ns;
-  while (ns < 100'000'000'000'000'000) ns *= 1000;  // 10^17 ns are 3 years
-  return Timestamp{ns};
+/// The numbers at one place of all names.
+using NumberColumn = std::vector<std::string>;
+
+/// The numbers that differ between names with the same texts; all numbers of a single name.
+std::vector<NumberColumn> number_columns(const std::vector<NameParts>& names) {
+  std::vector<NumberColumn> columns;
+  const auto has_other_texts = [&](const NameParts& name) { return name.texts != names.front().texts; };
+  if (names.empty() || std::ranges::any_of(names, has_other_texts)) return columns;
+  for (std::size_t i = 0; i < names.front().numbers.size(); ++i) {
+    NumberColumn column;
+    for (const NameParts& name : names) column.push_back(name.numbers[i]);
+    const bool differ = std::ranges::any_of(column, [&](const auto& text) { return text != column.front(); });
+    if (differ || names.size() == 1) columns.push_back(std::move(column));
+  }
+  return columns;
 }
 
-/// One kind of name for all images: stamps, numbers behind a common text, or their natural order.
+bool has_decimals(const NumberColumn& column) {
+  return std::ranges::any_of(column, [](const auto& text) { return text.find('.') != std::string::npos; });
+}
+
+/// The largest integer stands for what does not fit.
+std::vector<std::int64_t> integers_of(const NumberColumn& column) {
+  std::vector<std::int64_t> integers;
+  for (const std::string& text : column) {
+    std::int64_t& integer = integers.emplace_back();
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
+    if (error != std::errc() || end != text.data() + text.size())
+      integer = std::numeric_limits<std::int64_t>::max();
+  }
+  return integers;
+}
+
+/// Seconds with decimals; empty if one of the numbers is too large.
+std::vector<Timestamp> seconds_of(const NumberColumn& column) {
+  std::vector<Timestamp> times;
+  for (const std::string& text : column) {
+    const std::optional<Timestamp> t = eval::parse_stamp(text);
+    if (!t) return {};
+    times.push_back(*t);
+  }
+  return times;
+}
+
+constexpr std::int64_t kYear2001_ns = 1'000'000'000'000'000'000;
+constexpr std::int64_t kYear2128_ns = 5 * kYear2001_ns;
+
+/// Times since 1970, in s with decimals, or integers in s, ms, us or ns, which the range from 2001 to 2128
+/// tells apart; empty if one of the numbers is none.
+std::vector<Timestamp> times_since_1970(const NumberColumn& column) {
+  const auto is_in_range = [](std::int64_t t, std::int64_t unit_ns) {
+    return t >= kYear2001_ns / unit_ns && t < kYear2128_ns / unit_ns;
+  };
+  std::vector<Timestamp> times;
+  if (has_decimals(column)) {
+    times = seconds_of(column);
+    if (!std::ranges::all_of(times, [&](Timestamp t) { return is_in_range(t.ns, 1); })) return {};
+    return times;
+  }
+  for (const std::int64_t integer : integers_of(column)) {
+    constexpr std::array<std::int64_t, 4> kUnits_ns{1'000'000'000, 1'000'000, 1'000, 1};
+    const auto unit = std::ranges::find_if(kUnits_ns, [&](auto ns) { return is_in_range(integer, ns); });
+    if (unit == kUnits_ns.end()) return {};
+    times.push_back(Timestamp{integer * *unit});
+  }
+  return times;
+}
+
+/// The times in names, and their kind: those since 1970, else the only number that differs, else the order of
+/// the names.
+/// @throws InputError if that number is neither a time nor that of a frame
+std::pair<NameKind, std::vector<Timestamp>> times_in(const std::vector<NameParts>& names,
+                                                     const std::filesystem::path& folder) {
+  const std::vector<NumberColumn> columns = number_columns(names);
+  for (const NumberColumn& column : columns) {
+    if (auto times = times_since_1970(column); !times.empty()) return {NameKind::kStamp, std::move(times)};
+  }
+  if (columns.size() != 1) {
+    std::vector<std::int64_t> order(names.size());
+    std::iota(order.begin(), order.end(), 0);
+    return {NameKind::kOther, times_of_frames(order, folder)};
+  }
+  if (has_decimals(columns.front())) {
+    if (auto times = seconds_of(columns.front()); !times.empty()) return {NameKind::kStamp, std::move(times)};
+  }
+  return {NameKind::kNumber, times_of_frames(integers_of(columns.front()), folder)};
+}
+
+/// One kind of name for all images.
 NamedImages named_images(const std::filesystem::path& folder) {
-  NamedImages named;
   std::vector<std::filesystem::path> files = visible_files(folder);
   std::erase_if(files, [](const std::filesystem::path& file) { return !is_image(file); });
-  const auto all = [&](const auto& is) { return !files.empty() && std::ranges::all_of(files, is); };
-  const auto stem = [](const std::filesystem::path& file) { return file.stem().string(); };
-  if (all([&](const auto& file) { return stamp_of(stem(file)).has_value(); })) {
-    named.kind = NameKind::kStamp;
-  } else if (all([&](const auto& file) {
-               const auto name = numbered_name(stem(file));
-               return name && name->prefix == numbered_name(stem(files.front()))->prefix;
-             })) {
-    named.kind = NameKind::kNumber;
-  }
-  std::int64_t next = 0;
-  for (const std::filesystem::path& file : files) {
-    const std::int64_t number = named.kind == NameKind::kNumber ? numbered_name(stem(file))->number : next++;
-    const Timestamp of_number{(number * 1'000'000'000 + kFramesPerSecond / 2) / kFramesPerSecond};
-    named.images.push_back({named.kind == NameKind::kStamp ? *stamp_of(stem(file)) : of_number, file});
-  }
+  std::vector<NameParts> names;
+  for (const std::filesystem::path& file : files) names.push_back(parts_of(file.stem().string()));
+  const auto [kind, times] = times_in(names, folder);
+  NamedImages named{.kind = kind, .images = {}};
+  for (std::size_t i = 0; i < times.size(); ++i) named.images.push_back({times[i], files[i]});
   std::ranges::stable_sort(named.images, {}, &NamedImage::t);
   return named;
 }
@@ -180,6 +258,13 @@ Camera read_camera(const std::filesystem::path& file) {
                    "is not a camera file; expected width, height and a column-major 3x3 intrinsic_matrix");
 }
 
+std::string times_note(NameKind names) {
+  if (names == NameKind::kStamp) return "timestamps: the names of the images";
+  const std::string number =
+      names == NameKind::kNumber ? "file number" : "position of the name in their order";
+  return "timestamps: " + number + " / 30 s, as the images have none";
+}
+
 SequenceContent read_folder(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
@@ -194,9 +279,7 @@ SequenceContent read_folder(const std::filesystem::path& folder, FaultLog& fault
   }
   content.missing_calibration = "the folder has no JSON file with the camera";
   content.info.notes.push_back("depth: 1000 raw units per meter, unless a rig.toml sets [depth] scale");
-  content.info.notes.push_back(names == NameKind::kStamp
-                                   ? "timestamps: the names of the images"
-                                   : "timestamps: file number / 30 s, as the images have none");
+  content.info.notes.push_back(times_note(names));
   return content;
 }
 

@@ -3,8 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 #include <string>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -27,7 +32,34 @@ std::string natural_key(const std::string& name) {
   return key;
 }
 
+/// The median of the differences in order; 0 for fewer than two numbers.
+std::int64_t median_step(std::vector<std::int64_t> numbers) {
+  if (numbers.size() < 2) return 0;
+  std::ranges::sort(numbers);
+  std::adjacent_difference(numbers.begin(), numbers.end(), numbers.begin());
+  const auto middle = numbers.begin() + 1 + static_cast<std::ptrdiff_t>((numbers.size() - 1) / 2);
+  std::nth_element(numbers.begin() + 1, middle, numbers.end());
+  return *middle;
+}
+
 }  // namespace
+
+std::vector<Timestamp> times_of_frames(std::vector<std::int64_t> numbers,
+                                       const std::filesystem::path& folder) {
+  constexpr std::int64_t kMaxStep = 10;  // a third of a second; times in ms, us and ns are further apart
+  std::vector<Timestamp> times;
+  const std::int64_t largest = numbers.empty() ? 0 : std::ranges::max(numbers);
+  const std::int64_t step = median_step(numbers);
+  if (largest > eval::kMaxFrameNumber || step > kMaxStep)
+    throw InputError(
+        folder.string(),
+        fmt::format("the numbers in the names of the images, up to {} and mostly {} apart, are neither "
+                    "frame numbers at 30 Hz nor times since 1970 in s, ms, us or ns; rename the images to "
+                    "times in seconds with decimals, such as 0.033333.png, or number them consecutively",
+                    largest, step));
+  for (const std::int64_t number : numbers) times.push_back(eval::time_of_frame(number));
+  return times;
+}
 
 std::vector<std::filesystem::path> visible_files(const std::filesystem::path& folder) {
   std::vector<std::pair<std::string, std::filesystem::path>> by_key;

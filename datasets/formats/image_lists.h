@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -19,6 +20,13 @@ namespace stillpoint::datasets {
 /// Without hidden files, whose names begin with ".": macOS adds "._5.png" to "5.png", which is no image.
 /// @throws std::filesystem::filesystem_error if the folder cannot be read
 [[nodiscard]] std::vector<std::filesystem::path> visible_files(const std::filesystem::path& folder);
+
+/// Times of images without a stamp: frame number / 30 s.
+/// @param numbers in the names of images, in any order
+/// @param folder for messages
+/// @throws InputError if the numbers are too large, or most of them too far apart, to be those of frames
+[[nodiscard]] std::vector<Timestamp> times_of_frames(std::vector<std::int64_t> numbers,
+                                                     const std::filesystem::path& folder);
 
 struct StampedFile {
   Timestamp t;

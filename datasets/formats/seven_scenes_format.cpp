@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
 #include "datasets/formats/formats.h"
+#include "datasets/formats/image_lists.h"
 #include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
@@ -66,15 +67,14 @@ std::vector<NumberedFrame> list_frames(const std::filesystem::path& folder) {
   return frames;
 }
 
-void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& faults) {
-  const Timestamp t = eval::seven_scenes_time(frame.number);
-  const std::string name = frame.color.filename().string();
-  const std::filesystem::path stem = frame.color.parent_path() / name.substr(0, name.find('.'));
+void add_frame(const std::filesystem::path& color, Timestamp t, SequenceContent& content, FaultLog& faults) {
+  const std::string name = color.filename().string();
+  const std::filesystem::path stem = color.parent_path() / name.substr(0, name.find('.'));
   if (!content.info.frame_times.empty() && content.info.frame_times.back() == t) {
-    throw InputError(frame.color.string(), "the frame exists both as PNG and as JPEG; remove one of them");
+    throw InputError(color.string(), "the frame exists both as PNG and as JPEG; remove one of them");
   }
   content.info.frame_times.push_back(t);
-  content.frame_files.push_back(FrameFiles{.color = frame.color, .depth = stem.string() + ".depth.png"});
+  content.frame_files.push_back(FrameFiles{.color = color, .depth = stem.string() + ".depth.png"});
   const std::filesystem::path pose = stem.string() + ".pose.txt";
   if (!std::filesystem::exists(pose)) return;
   faults.guard([&] {
@@ -99,8 +99,12 @@ SequenceContent read_seven_scenes(const std::filesystem::path& folder, FaultLog&
   content.info.name = folder.filename().string();
   content.info.folder = folder;
   content.info.ground_truth.trajectory.frame = "depth_camera";
-  for (const NumberedFrame& frame : list_frames(folder)) {
-    faults.guard([&] { add_frame(frame, content, faults); });
+  const std::vector<NumberedFrame> frames = list_frames(folder);
+  std::vector<std::int64_t> numbers;
+  for (const NumberedFrame& frame : frames) numbers.push_back(frame.number);
+  const std::vector<Timestamp> times = times_of_frames(numbers, folder);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    faults.guard([&] { add_frame(frames[i].color, times[i], content, faults); });
   }
   if (content.frame_files.empty()) throw InputError(folder.string(), "contains no frame-N.color.png or .jpg");
   set_seven_scenes_calibration(content);

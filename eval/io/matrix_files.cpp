@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::int64_t kSevenScenesRate = 30;  // [Hz]
-constexpr double kEstimateTolerance = 0.05;    // of R R^T; estimates may be written with few digits
+constexpr std::int64_t kFrameRate = 30;      // [Hz]
+constexpr double kEstimateTolerance = 0.05;  // of R R^T; estimates may be written with few digits
 
 using MatrixNumbers = std::array<double, 16>;
 
@@ -135,8 +135,9 @@ std::optional<std::int64_t> seven_scenes_number(std::string_view file_name, std:
   return number;
 }
 
-Timestamp seven_scenes_time(std::int64_t number) {
-  return Timestamp{(number * kNsPerSecond + kSevenScenesRate / 2) / kSevenScenesRate};
+Timestamp time_of_frame(std::int64_t number) {
+  STILLPOINT_CHECK(number <= kMaxFrameNumber);
+  return Timestamp{(number * kNsPerSecond + kFrameRate / 2) / kFrameRate};
 }
 
 LoadedTrajectory read_seven_scenes(const fs::path& folder) {
@@ -149,11 +150,15 @@ LoadedTrajectory read_seven_scenes(const fs::path& folder) {
   if (error || files.empty()) {
     throw InputError(folder.string(), "no frame-N.pose.txt found; expected a 7-Scenes sequence folder");
   }
+  if (const auto& [number, file] = *files.rbegin(); number > kMaxFrameNumber)
+    throw InputError(file.string(),
+                     "the number in the name is too large for that of a frame; if it is a "
+                     "time, write the poses to one file in the TUM format");
   TrajectoryBuilder builder;
   for (const auto& [number, file] : files) {
     const std::string name = file.string();
     const TextRow whole_file{.file = name, .line = 1, .content = {}, .fields = {}};
-    builder.add(whole_file, seven_scenes_time(number), read_pose_matrix(file, PoseCheck::kEstimate));
+    builder.add(whole_file, time_of_frame(number), read_pose_matrix(file, PoseCheck::kEstimate));
   }
   builder.require_poses(folder.string());
   return builder.release();
@@ -162,7 +167,7 @@ LoadedTrajectory read_seven_scenes(const fs::path& folder) {
 void write_seven_scenes(const Trajectory& trajectory, const fs::path& folder) {
   std::int64_t last = -1;
   for (const auto& [pose, t] : trajectory.poses) {
-    const std::int64_t number = std::llround(to_seconds(t) * static_cast<double>(kSevenScenesRate));
+    const std::int64_t number = std::llround(to_seconds(t) * static_cast<double>(kFrameRate));
     if (number <= last) throw InputError(folder.string(), "two poses have the same frame number at 30 Hz");
     last = number;
     char name[64];

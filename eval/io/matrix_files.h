@@ -47,8 +47,12 @@ struct KittiTexts {
 [[nodiscard]] std::optional<std::int64_t> seven_scenes_number(std::string_view file_name,
                                                               std::string_view suffix);
 
-/// Stamp of a frame: number / 30 Hz.
-[[nodiscard]] Timestamp seven_scenes_time(std::int64_t number);
+/// 38 days at 30 Hz: larger numbers in the names of files are times.
+inline constexpr std::int64_t kMaxFrameNumber = 100'000'000;
+
+/// Stamp of a frame of data without stamps: number / 30 Hz.
+/// @param number at most `kMaxFrameNumber`
+[[nodiscard]] Timestamp time_of_frame(std::int64_t number);
 
 /// Writes `frame-NNNNNN.pose.txt` files; the frame number is round(stamp * 30 Hz).
 /// @throws InputError if a file cannot be written or two poses have the same frame number

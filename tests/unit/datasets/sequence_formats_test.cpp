@@ -319,6 +319,17 @@ TEST(FolderFormat, OrdersNamesByTheirNumbersAndTakesTimesFromThem) {
          {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
         {{"a", "b", "c"}, {0, 33'333'333, 66'666'667}},
         {{"9_383", "10_417", "11_450"}, {0, 33'333'333, 66'666'667}},
+        {{"rgb_1700000000050000000", "rgb_1700000000100000000", "rgb_1700000000150000000"},
+         {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
+        {{"frame_1700000000050000.aligned", "frame_1700000000100000.aligned",
+          "frame_1700000000150000.aligned"},
+         {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
+        {{"9_1700000000.05", "10_1700000000.10", "11_1700000000.15"},
+         {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
+        {{"1700000000050_9", "1700000000050_10", "1700000000050_11"},  // the time of the recording
+         {300'000'000, 333'333'333, 366'666'667}},
+        {{"frame9.aligned", "frame10.aligned", "frame11.aligned"}, {300'000'000, 333'333'333, 366'666'667}},
+        {{"0", "0.033", "0.067"}, {0, 33'000'000, 67'000'000}},
         {{"a_9", "a_10", "b_2"}, {0, 33'333'333, 66'666'667}}}) {
     const TemporaryFolder folder;
     write_named_folder(folder, names);
@@ -330,6 +341,30 @@ TEST(FolderFormat, OrdersNamesByTheirNumbersAndTakesTimesFromThem) {
       EXPECT_EQ(stream->load_frame(i).depth.at<std::uint16_t>(0, 0), 1000 * (i + 1));
     }
   }
+}
+
+TEST(FolderFormat, NumbersThatAreNeitherTimesNorThoseOfFramesAreErrors) {
+  for (const std::vector<std::string>& names : std::vector<std::vector<std::string>>{
+           {"0", "33333", "66667"},                                                      // us
+           {"0", "33333333", "66666667"},                                                // ns
+           {"0", "33", "67"},                                                            // ms
+           {"cap_20240131120000000", "cap_20240131120000033", "cap_20240131120000066"},  // dates
+           {"20240131120000", "20240131120001", "20240131120002"},
+           {"99999999999999999999", "100000000000000000000", "100000000000000000001"}}) {  // 2^63 is less
+    SCOPED_TRACE(names.front());
+    const TemporaryFolder folder;
+    write_named_folder(folder, names);
+    expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
+                       {"color", "neither frame numbers at 30 Hz nor times since 1970", "rename the images"});
+  }
+}
+
+TEST(SevenScenesFormat, NumbersThatAreTimesAreAnError) {
+  const TemporaryFolder folder;
+  for (const char* number : {"1700000000050000000", "1700000000083333000"})
+    write_png(folder.path() / (std::string("frame-") + number + ".color.png"), cv::Mat::zeros(6, 8, CV_8UC3));
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
+                     {folder.path().string(), "up to 1700000000083333000", "frame numbers at 30 Hz"});
 }
 
 TEST(FolderFormat, HiddenFilesAreNoImagesAndNoCameras) {

@@ -97,6 +97,13 @@ TEST(Formats, SevenScenesFolderIsReadBackAsWritten) {
   expect_same(read_trajectory({.path = folder.path()}).trajectory, path);
 }
 
+TEST(Formats, SevenScenesFilesThatAreNumberedByTimesAreErrors) {
+  const TemporaryFolder folder;
+  folder.write("frame-1700000000050000000.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  expect_input_error([&] { static_cast<void>(read_seven_scenes(folder.path())); },
+                     {"frame-1700000000050000000.pose.txt", "too large for that of a frame"});
+}
+
 TEST(Formats, AreDetectedFromTheContent) {
   EXPECT_EQ(detect_format(format_tum(kPath)), TrajectoryFormat::kTum);
   EXPECT_EQ(detect_format(format_euroc(kPath)), TrajectoryFormat::kEuroc);
