@@ -236,6 +236,11 @@ void add_other_sensors(SequenceContent& content, NameKind names, FaultLog& fault
     content = with_ground_truth(std::move(content), eval::read_tum_ground_truth(truth, "camera", faults));
 }
 
+/// Whether a 3x3 camera matrix is in row-major order, as other programs write it: its last row is 0 0 1.
+bool is_row_major(const std::vector<double>& K) {
+  return (K.at(2) != 0.0 || K.at(5) != 0.0) && K.at(6) == 0.0 && K.at(7) == 0.0;
+}
+
 /// Open3D's format: width, height, and the 3x3 `intrinsic_matrix` in column-major order.
 Camera read_camera(const std::filesystem::path& file) {
   require_regular_file(file);
@@ -243,12 +248,13 @@ Camera read_camera(const std::filesystem::path& file) {
   const nlohmann::json root = nlohmann::json::parse(in, nullptr, false);
   try {
     const std::vector<double> K = root.at("intrinsic_matrix").get<std::vector<double>>();
+    const bool row_major = is_row_major(K);
     const Camera camera{.width = root.at("width").get<int>(),
                         .height = root.at("height").get<int>(),
                         .fx = K.at(0),
                         .fy = K.at(4),
-                        .cx = K.at(6),
-                        .cy = K.at(7),
+                        .cx = K.at(row_major ? 2 : 6),
+                        .cy = K.at(row_major ? 5 : 7),
                         .model = CameraModel::kRadialTangential,
                         .distortion = {}};
     if (camera.width > 0 && camera.height > 0 && camera.fx > 0.0 && camera.fy > 0.0) return camera;

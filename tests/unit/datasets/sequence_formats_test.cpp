@@ -289,6 +289,17 @@ TEST(FolderFormat, PairsImagesByNameAndReadsTheJsonCamera) {
   EXPECT_EQ(stream->load_frame(2).depth.at<std::uint16_t>(0, 0), 1000);
 }
 
+TEST(FolderFormat, ReadsARowMajorCameraMatrix) {
+  const TemporaryFolder folder;
+  write_plain_folder(folder);
+  folder.write("camera.json",
+               R"({"width": 8, "height": 6, "intrinsic_matrix": [10, 0, 3.5, 0, 11, 2.5, 0, 0, 1]})");
+  const Camera camera = open_sequence(folder.path())->info().rig.camera;
+  EXPECT_EQ(camera.fy, 11.0);
+  EXPECT_EQ(camera.cx, 3.5);
+  EXPECT_EQ(camera.cy, 2.5);
+}
+
 /// Three images color/NAME.png and depth/NAME.png with the depths 1, 2 and 3 m.
 void write_named_folder(const TemporaryFolder& folder, const std::vector<std::string>& names) {
   write_plain_folder(folder);
