@@ -86,7 +86,69 @@ void correct_axes(SequenceInfo& info) {
   for (ImuSample& sample : info.imu) sample = info.rig.imu_axes.corrected(sample);
 }
 
-void check_rig(const SequenceContent& content) {
+/// Refuses intrinsics of another image size, and those in other units.
+/// @param place of the calibration, for messages
+void require_possible_camera(const Camera& camera, const std::string& place) {
+  constexpr double kLeastFocal = 0.02;   // of the image size; a field of view of 175 deg has a fiftieth
+  constexpr double kMaxAspect = 2.0;     // of fx and fy: columns or rows that are binned alone
+  constexpr double kLeastMargin = 0.05;  // of the image size: lenses are near the center, crops less so
+  if (camera.fx < kLeastFocal * camera.width || camera.fy < kLeastFocal * camera.height) {
+    throw InputError(
+        place, fmt::format("the focal lengths {:g} and {:g} are too short for an image of {} x {} pixels; "
+                           "if they are relative to its size, write fx and cx times its width, and fy "
+                           "and cy times its height, into a rig.toml",
+                           camera.fx, camera.fy, camera.width, camera.height));
+  }
+  if (camera.fx > kMaxAspect * camera.fy || camera.fy > kMaxAspect * camera.fx)
+    throw InputError(place, fmt::format("the focal lengths fx = {:g} and fy = {:g} differ by more than a "
+                                        "factor of {:g}; correct them in a rig.toml",
+                                        camera.fx, camera.fy, kMaxAspect));
+  const auto is_inside = [](double center, int size) {
+    return center >= kLeastMargin * size && center <= (1.0 - kLeastMargin) * size;
+  };
+  if (!is_inside(camera.cx, camera.width) || !is_inside(camera.cy, camera.height))
+    throw InputError(place, fmt::format("the principal point ({:g}, {:g}) is at the border or outside of the "
+                                        "image of {} x {} pixels; correct cx and cy, or width and height, in "
+                                        "a rig.toml",
+                                        camera.cx, camera.cy, camera.width, camera.height));
+}
+
+/// A value of the calibration.
+struct CalibratedValue {
+  std::string_view name;
+  double value = 0.0;
+  std::string_view unit;
+  std::string_view likely_unit;  ///< if it is too large
+};
+
+void require_at_most(double limit, const CalibratedValue& value, const std::string& place) {
+  if (std::abs(value.value) <= limit) return;
+  throw InputError(place,
+                   fmt::format("the {} of {:g} {} is larger than {:g} {}; if it is in {}, convert it, "
+                               "else correct it, in a rig.toml",
+                               value.name, value.value, value.unit, limit, value.unit, value.likely_unit));
+}
+
+/// Refuses values that no device has, which other units cause.
+void require_possible_rig(const SequenceInfo& info, const std::string& place) {
+  constexpr double kMaxReadout_s = 0.1;     // the interval of a camera of 10 Hz
+  constexpr double kMaxTimeOffset_s = 1.0;  // the estimate is bounded to 0.15 s
+  constexpr double kMaxDistance_m = 3.0;    // of camera and IMU in a car
+  const Rig& rig = info.rig;
+  require_possible_camera(rig.camera, place);
+  require_at_most(kMaxReadout_s, {"readout time of the rolling shutter", rig.rolling_shutter_s, "s", "ms"},
+                  place);
+  require_at_most(kMaxTimeOffset_s, {"time offset of the IMU", rig.time_offset_s, "s", "ms"}, place);
+  require_at_most(kMaxDistance_m, {"distance of camera and IMU", rig.T_b_c.p.norm(), "m", "mm"}, place);
+  if (!info.depth_camera) return;
+  require_possible_camera(info.depth_camera->camera, place);
+  require_at_most(kMaxDistance_m,
+                  {"distance of color and depth camera", info.depth_camera->T_c_d.p.norm(), "m", "mm"},
+                  place);
+}
+
+/// @param requested the rig file of the options, or empty
+void check_rig(const SequenceContent& content, const std::filesystem::path& requested) {
   const Camera& camera = content.info.rig.camera;
   const std::string rig_file = companion_file(content.info.folder, "rig.toml").string();
   if (camera.width <= 0 || camera.height <= 0 || camera.fx <= 0.0 || camera.fy <= 0.0) {
@@ -95,14 +157,10 @@ void check_rig(const SequenceContent& content) {
                                    "freiburg3: " +
                                    std::string(kExampleCamera));
   }
-  constexpr double kLeastFocal = 0.02;  // of the image size; a field of view of 175 deg has a fiftieth
-  if (camera.fx < kLeastFocal * camera.width || camera.fy < kLeastFocal * camera.height) {
-    throw InputError(
-        rig_file, fmt::format("the focal lengths {:g} and {:g} are too short for an image of {} x {} pixels; "
-                              "if they are relative to its size, write fx and cx times its width, and fy "
-                              "and cy times its height, into this file",
-                              camera.fx, camera.fy, camera.width, camera.height));
-  }
+  const bool has_file = std::filesystem::exists(rig_file);
+  require_possible_rig(content.info, !requested.empty() ? requested.string()
+                                     : has_file         ? rig_file
+                                                        : content.info.folder.string());
   if (content.info.rig.has_imu && !content.extrinsic_known) {
     throw InputError(
         rig_file,
@@ -233,7 +291,7 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   content.info.true_boxes = read_optional_boxes(companion_file(root, "true_boxes.txt"), faults);
   override_rig(content, options.rig_file);
   content.raw_depth = options.raw_depth;
-  check_rig(content);
+  check_rig(content, options.rig_file);
   if (&format == &kBagFormat) content = with_metric_accelerations(std::move(content));
   correct_axes(content.info);
   check_overlap(content.info, faults);

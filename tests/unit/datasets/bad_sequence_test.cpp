@@ -153,6 +153,45 @@ TEST(BadSequence, FocalLengthsRelativeToTheImageAreAnError) {
   EXPECT_EQ(open_sequence(folder.path())->info().rig.camera.fx, 60.0);
 }
 
+TEST(BadSequence, ImpossibleCalibrationsAreErrors) {
+  const std::string size = "width = 640, height = 480, ";
+  const auto imu = [](const std::string& x_m, const std::string& offset_s) {
+    return "imu = { T_b_c = [1,0,0," + x_m + ", 0,1,0,0, 0,0,1,0, 0,0,0,1], time_offset_s = " + offset_s +
+           " }\n";
+  };
+  const auto camera = [&](const std::string& rest) { return "camera = { " + size + rest + " }\n"; };
+  const std::string valid = "fx = 535, fy = 539, cx = 320, cy = 240";
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  for (const auto& [text, parts] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {camera("fx = 535, fy = 539, cx = 3200, cy = 240"), {"principal point (3200, 240)", "640 x 480"}},
+           {camera("fx = 535, fy = 539, cx = 320, cy = 0"), {"principal point (320, 0)"}},
+           {camera("fx = 535, fy = 5390, cx = 320, cy = 240"), {"fx = 535 and fy = 5390"}},
+           {camera(valid + ", rolling_shutter_s = 33"), {"readout time", "33 s", "in ms"}},
+           {camera(valid) + imu("20.3", "0"), {"distance of camera and IMU", "20.3 m", "in mm"}},
+           {camera(valid) + imu("0.02", "-5"), {"time offset", "-5 s", "in ms"}},
+           {camera(valid) + "depth = { " + size + "fx = 535, fy = 539, cx = 3200, cy = 240, T_c_d = " +
+                "[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1] }\n",
+            {"principal point (3200, 240)"}}}) {
+    SCOPED_TRACE(text);
+    folder.write("rig.toml", text);
+    std::vector<std::string> all{"rig.toml"};
+    all.insert(all.end(), parts.begin(), parts.end());
+    expect_rejected(folder, all);
+  }
+  folder.write("rig.toml", camera(valid + ", rolling_shutter_s = 0.05") + imu("1.5", "0.4"));
+  EXPECT_EQ(open_sequence(folder.path())->info().rig.time_offset_s, 0.4);
+}
+
+TEST(BadSequence, AnImpossibleValueOfARequestedRigFileIsNamedWithThatFile) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  const TemporaryFolder other;
+  const std::filesystem::path rig = other.write("other.toml", "[camera]\ncx = 100\n");
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path(), {.rig_file = rig})); },
+                     {rig.string(), "principal point (100, 2.5)"});
+}
+
 TEST(BadSequence, UnconnectedCoordinateFramesAreAnError) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);

@@ -40,11 +40,11 @@ TEST(Eth3dFormat, CalibrationIsInItsFile) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   std::filesystem::remove(folder.path() / "rig.toml");
-  folder.write("calibration.txt", "726.28 726.29 354.6 186.4\n");
+  folder.write("calibration.txt", "10.28 10.29 3.6 2.4\n");
   const std::unique_ptr<SensorStream> stream = open_sequence(folder.path());
   EXPECT_EQ(stream->info().format, "eth3d");
-  EXPECT_EQ(stream->info().rig.camera.fy, 726.29);
-  EXPECT_EQ(stream->info().rig.camera.cx, 354.6);
+  EXPECT_EQ(stream->info().rig.camera.fy, 10.29);
+  EXPECT_EQ(stream->info().rig.camera.cx, 3.6);
   EXPECT_EQ(stream->info().rig.camera.width, 8);
   EXPECT_DOUBLE_EQ(depth_at(stream->load_frame(0).depth, 5000.0, 3, 2), 1.0);
   std::filesystem::remove(folder.path() / "depth.txt");
