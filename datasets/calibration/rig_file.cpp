@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "datasets/calibration/rig_yaml.h"
+#include "datasets/io/lens_model.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/text_reader.h"
 
@@ -74,8 +75,13 @@ class Section {
     return values;
   }
 
+  /// File, line and key, for messages.
+  [[nodiscard]] std::string place(const toml::node& node, std::string_view key) const {
+    return fmt::format("{}:{}: \"{}\"", file_, node.source().begin.line, key);
+  }
+
   [[noreturn]] void fail(const toml::node& node, std::string_view key, const std::string& problem) const {
-    throw InputError(file_, node.source().begin.line, "\"" + std::string(key) + "\" " + problem);
+    throw InputError(place(node, key) + " " + problem);
   }
 
   void require(const std::vector<std::string_view>& keys) const {
@@ -141,6 +147,14 @@ CameraModel model_of(const Section& camera, CameraModel fallback) {
   camera.fail(*node, "model", "must be \"radial-tangential\" or \"kannala-brandt\"");
 }
 
+std::string_view model_name(CameraModel model) {
+  for (const auto& [value, name] : enum_names(CameraModel{})) {
+    if (value == model) return name;
+  }
+  STILLPOINT_CHECK(false && "a camera model without name");
+  return {};
+}
+
 /// A camera that the format does not know must be given completely: 0 is no sensible default of a value.
 void require_complete(const Section& section, const Camera& known) {
   if (section.is_empty() || known.width > 0 || known.fx > 0.0) return;
@@ -163,12 +177,10 @@ Camera override_camera(const Section& section, const Camera& known) {
   camera.model = model_of(section, camera.model);
   const toml::node* const distortion = section.find("distortion");
   if (distortion == nullptr) return camera;
-  const std::vector<double> values = section.numbers(*distortion, "distortion");
-  if (values.size() > camera.distortion.size())
-    section.fail(*distortion, "distortion", "has more than 8 numbers");
-  camera.distortion.fill(0.0);
-  std::copy(values.begin(), values.end(), camera.distortion.begin());
-  return camera;
+  return with_lens(camera,
+                   {.name = std::string(model_name(camera.model)),
+                    .coefficients = section.numbers(*distortion, "distortion")},
+                   section.place(*distortion, "distortion"));
 }
 
 Pose pose_of(const Section& section, std::string_view key) {
@@ -248,18 +260,6 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
   require_complete(camera, rig.camera);
   return result;
 }
-
-namespace {
-
-std::string_view model_name(CameraModel model) {
-  for (const auto& [value, name] : enum_names(CameraModel{})) {
-    if (value == model) return name;
-  }
-  STILLPOINT_CHECK(false && "a camera model without name");
-  return {};
-}
-
-}  // namespace
 
 std::string rig_file_text(const Rig& rig, bool with_extrinsic) {
   const Camera& camera = rig.camera;

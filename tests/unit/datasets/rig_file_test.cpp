@@ -88,6 +88,8 @@ TEST(RigFile, TypeAndRangeErrorsNameTheLine) {
   expect_rejected("[camera]\nfx = nan\n", {"rig.toml:2", "finite"});
   expect_rejected("[camera]\nmodel = \"fov\"\n", {"rig.toml:2", "radial-tangential"});
   expect_rejected("[camera]\ndistortion = [1,2,3,4,5,6,7,8,9]\n", {"rig.toml:2", "more than 8"});
+  expect_rejected("[camera]\nmodel = \"kannala-brandt\"\ndistortion = [0.1,0,0,0,0.5]\n",
+                  {"rig.toml:3", "\"distortion\"", "more than 4"});
   expect_rejected("[camera]\nrolling_shutter_s = -0.1\n", {"rig.toml:2", "must not be negative"});
   expect_rejected("[depth]\nscale = 0\n", {"rig.toml:2", "greater than 0"});
   expect_rejected("[imu]\nT_b_c = [1, 0]\n", {"rig.toml:2", "16 numbers"});
