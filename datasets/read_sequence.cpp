@@ -65,14 +65,36 @@ void apply_rig(SequenceContent& content, const std::filesystem::path& file) {
   content.info.notes.emplace_back("depth is registered to the color camera by [depth] of this file");
 }
 
+/// Whether a rig file states another camera than the format, not only a better calibration of the same one.
+bool is_other_camera(const Camera& camera, const Camera& of_format) {
+  constexpr double kMaxDifference = 0.05;  // of the focal length; calibrations of one camera differ by less
+  const auto differ = [](double a, double b) { return std::abs(a - b) > kMaxDifference * b; };
+  return camera.width != of_format.width || camera.height != of_format.height ||
+         differ(camera.fx, of_format.fx) || differ(camera.fy, of_format.fy);
+}
+
+/// Converts the ground truth if the camera of the format, which it is of, is that of the rig.
+void convert_truth(SequenceContent& content, const Camera& of_format) {
+  std::vector<StampedPose>& poses = content.info.ground_truth.trajectory.poses;
+  if (content.mirrored_truth == nullptr || poses.empty()) return;
+  const bool is_other = is_other_camera(content.info.rig.camera, of_format);
+  content.info.notes.push_back(is_other
+                                   ? "ground truth: as in its file, because a rig file replaces the camera"
+                                   : "ground truth: mirrored as the camera of the format");
+  if (is_other) return;
+  for (StampedPose& pose : poses) pose.T_w_f = content.mirrored_truth(pose.T_w_f);
+}
+
 /// Applies the rig.toml of the sequence if there is one, then the requested file: what that does not contain,
 /// as the YAML of other programs the unit of depth, keeps the value of the sequence.
 void override_rig(SequenceContent& content, const std::filesystem::path& requested) {
+  const Camera camera_of_format = content.info.rig.camera;
   const std::filesystem::path local = companion_file(content.info.folder, "rig.toml");
   std::error_code ignored;
   if (std::filesystem::exists(local, ignored) && !std::filesystem::equivalent(local, requested, ignored))
     apply_rig(content, local);
   if (!requested.empty()) apply_rig(content, requested);
+  convert_truth(content, camera_of_format);
 }
 
 /// A valid line of a rig.toml: the camera of TUM freiburg3.

@@ -50,10 +50,12 @@ struct SequenceContent {
   std::vector<FrameFiles> frame_files;  ///< one per info.frame_times; with `images`, names for messages
   std::optional<ImageSource> images;    ///< set if the images are not files
   eval::RowRepairs truth_repairs;       ///< of the ground-truth file
-  bool extrinsic_known = true;          ///< whether the format provides the camera-IMU extrinsic
-  std::string missing_calibration;      ///< why the format does not know the camera, if it does not
-  std::uint16_t no_depth_value = 0;     ///< raw value, besides 0, that means "not measured"
-  bool raw_depth = false;               ///< do not register depth images of `info.depth_camera`
+  /// Mirrors a pose of the ground truth, as the format mirrors its camera; not used with another camera.
+  Pose (*mirrored_truth)(const Pose& T_w_f) = nullptr;
+  bool extrinsic_known = true;       ///< whether the format provides the camera-IMU extrinsic
+  std::string missing_calibration;   ///< why the format does not know the camera, if it does not
+  std::uint16_t no_depth_value = 0;  ///< raw value, besides 0, that means "not measured"
+  bool raw_depth = false;            ///< do not register depth images of `info.depth_camera`
 };
 
 /// `content` with a ground-truth trajectory.

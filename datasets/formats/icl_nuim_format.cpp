@@ -5,11 +5,13 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
 #include "datasets/formats/image_lists.h"
+#include "eval/io/matrix_files.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 
@@ -17,7 +19,7 @@ namespace stillpoint::datasets {
 namespace {
 
 constexpr double kIclDepthUnitsPerM = 5000.0;
-constexpr std::int64_t kIclFramesPerSecond = 30;
+constexpr std::string_view kIclTruth = ".freiburg";  ///< extension of the ground truth
 
 /// Published with fy = -480: the y axis of the published camera and poses points up. With images whose rows
 /// go down and fy = 480, the camera frame c' is mirrored: p_c' = F p_c, F = diag(1, -1, 1).
@@ -30,9 +32,12 @@ constexpr Camera kIclCamera{.width = 640,
                             .model = CameraModel::kRadialTangential,
                             .distortion = {}};
 
-Timestamp time_of_index(double index) {
-  const auto number = static_cast<std::int64_t>(index);
-  return {(number * 1'000'000'000 + kIclFramesPerSecond / 2) / kIclFramesPerSecond};
+/// @param index a frame number, read as a number of seconds
+/// @return nullopt unless it is that of a frame
+std::optional<Timestamp> time_of_index(Timestamp index) {
+  constexpr std::int64_t kOne = 1'000'000'000;
+  if (index.ns < 0 || index.ns % kOne != 0 || index.ns / kOne > eval::kMaxFrameNumber) return std::nullopt;
+  return eval::time_of_frame(index.ns / kOne);
 }
 
 /// Rows `index depth index color`; the indices are frame numbers.
@@ -43,9 +48,10 @@ void add_frame_pairs(SequenceContent& content, FaultLog& faults) {
   eval::for_each_row(text, file.string(), faults, [&](const eval::TextRow& row) {
     if (row.fields.size() < 4)
       throw row.error("expected the four fields: index, depth image, index, color image");
-    const Timestamp t = time_of_index(row.finite_number(2));
-    if (!content.info.frame_times.empty()) row.require_increasing(content.info.frame_times.back(), t);
-    content.info.frame_times.push_back(t);
+    const std::optional<Timestamp> t = time_of_index(row.time(2, eval::TimeUnit::kSeconds));
+    if (!t) throw row.error("the index " + std::string(row.fields[2]) + " is no frame number");
+    if (!content.info.frame_times.empty()) row.require_increasing(content.info.frame_times.back(), *t);
+    content.info.frame_times.push_back(*t);
     content.frame_files.push_back({.color = folder / row.fields[3], .depth = folder / row.fields[1]});
   });
   if (content.frame_files.empty()) throw InputError(file.string(), "contains no images; copy the file again");
@@ -59,10 +65,23 @@ Pose mirrored(const Pose& T_w_c) {
   return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), F.cwiseProduct(T_w_c.p)};
 }
 
+/// `truth` with times instead of the frame numbers.
+eval::LoadedTrajectory with_times(eval::LoadedTrajectory truth, const std::filesystem::path& file) {
+  for (StampedPose& pose : truth.trajectory.poses) {
+    const std::optional<Timestamp> t = time_of_index(pose.t);
+    if (!t)
+      throw InputError(file.string(), "the stamp " + eval::format_stamp(pose.t) +
+                                          " is no frame number, which the images have; write the number of "
+                                          "the frame of each pose");
+    pose.t = *t;
+  }
+  return truth;
+}
+
 /// livingRoomN.gt.freiburg or trajN.gt.freiburg: rows of TUM with the frame number instead of the time.
 std::optional<std::filesystem::path> ground_truth_file(const std::filesystem::path& folder) {
   for (const std::filesystem::path& file : visible_files(folder)) {
-    if (file.extension() == ".freiburg") return file;
+    if (file.extension() == kIclTruth) return file;
   }
   const std::filesystem::path file = folder / "groundtruth.txt";
   return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
@@ -77,13 +96,16 @@ SequenceContent read_icl(const std::filesystem::path& folder, FaultLog& faults) 
   content.info.rig.depth_units_per_m = kIclDepthUnitsPerM;
   content.info.notes.emplace_back("timestamps: frame number / 30 s, as the frames have none");
   content.info.notes.emplace_back(
-      "calibration: that of ICL-NUIM with fy = 480 for the published -480; the ground truth is mirrored "
-      "accordingly");
+      "calibration: that of ICL-NUIM with fy = 480 for the published -480, unless a rig.toml sets [camera]");
   if (const std::optional<std::filesystem::path> file = ground_truth_file(folder)) {
-    eval::LoadedTrajectory truth = eval::read_tum_ground_truth(*file, "camera", faults);
-    for (StampedPose& pose : truth.trajectory.poses)
-      pose = {time_of_index(to_seconds(pose.t)), mirrored(pose.T_w_f)};
-    content = with_ground_truth(std::move(content), std::move(truth));
+    content = with_ground_truth(std::move(content),
+                                with_times(eval::read_tum_ground_truth(*file, "camera", faults), *file));
+    if (file->extension() != kIclTruth) {
+      content.mirrored_truth = mirrored;  // other recordings have this layout, too
+    } else {
+      for (StampedPose& pose : content.info.ground_truth.trajectory.poses) pose.T_w_f = mirrored(pose.T_w_f);
+      content.info.notes.emplace_back("ground truth: mirrored as the camera of the format");
+    }
   }
   return content;
 }

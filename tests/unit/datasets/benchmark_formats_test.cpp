@@ -54,8 +54,8 @@ TEST(Eth3dFormat, CalibrationIsInItsFile) {
                      {"calibration.txt", "fx fy cx cy"});
 }
 
-TEST(IclNuimFormat, FrameNumbersAreTimesAndTheMirroredAxisIsRestored) {
-  const TemporaryFolder folder;
+/// Three images and the list of their frame numbers.
+void write_icl_images(const TemporaryFolder& folder) {
   std::string rows;
   for (int i = 0; i < 3; ++i) {
     const std::string number = std::to_string(i);
@@ -64,6 +64,11 @@ TEST(IclNuimFormat, FrameNumbersAreTimesAndTheMirroredAxisIsRestored) {
     rows += number + " depth/" + number + ".png " + number + " rgb/" + number + ".png\n";
   }
   folder.write("associations.txt", rows);
+}
+
+TEST(IclNuimFormat, FrameNumbersAreTimesAndTheMirroredAxisIsRestored) {
+  const TemporaryFolder folder;
+  write_icl_images(folder);
   // 90 degrees about x, then about z: with the y axis mirrored, both turn the other way.
   folder.write("livingRoom0.gt.freiburg",
                "1 1 2 3 0.7071067811865476 0 0 0.7071067811865476\n2 1 2 3 0 0 0.7071067811865476 "
@@ -81,6 +86,30 @@ TEST(IclNuimFormat, FrameNumbersAreTimesAndTheMirroredAxisIsRestored) {
   const Eigen::Matrix3d about_x = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
   EXPECT_TRUE(poses[0].T_w_f.R().isApprox(F * about_x * F, 1e-12));
   EXPECT_TRUE(poses[0].T_w_f.p.isApprox(Eigen::Vector3d(1, -2, 3)));
+}
+
+TEST(IclNuimFormat, GroundTruthOfAnotherCameraIsNotMirrored) {
+  const TemporaryFolder folder;
+  write_icl_images(folder);
+  folder.write("groundtruth.txt", "1 1 2 3 0 0 0 1\n2 1 2 3 0 0 0 1\n15 1 2 3 0 0 0 1\n");
+  const auto y_of_truth = [&](const OpenOptions& options) {
+    return open_sequence(folder.path(), options)->info().ground_truth.trajectory.poses.at(0).T_w_f.p.y();
+  };
+  EXPECT_EQ(y_of_truth({}), -2.0);
+  const std::filesystem::path rig = folder.write("other.toml", "[camera]\nfx = 525\nfy = 525\n");
+  EXPECT_EQ(y_of_truth({.rig_file = rig}), 2.0);
+  folder.write("rig.toml", "[depth]\nscale = 1000\n");  // of the same camera
+  EXPECT_EQ(y_of_truth({}), -2.0);
+  std::filesystem::rename(rig, folder.path() / "rig.toml");
+  EXPECT_EQ(y_of_truth({}), 2.0);
+}
+
+TEST(IclNuimFormat, StampsInThePlaceOfFrameNumbersAreErrors) {
+  const TemporaryFolder folder;
+  write_icl_images(folder);
+  folder.write("groundtruth.txt", "0.033 1 2 3 0 0 0 1\n");
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
+                     {"groundtruth.txt", "0.033", "no frame number"});
 }
 
 TEST(TumViFormat, DeepImagesAndTheCalibrationOfKalibrAreRead) {
