@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// TUM RGB-D benchmark (Sturm et al., IROS 2012) and folders with the same layout.
 #include <array>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -117,7 +118,8 @@ Timestamp association_time(const eval::TextRow& row, std::size_t field) {
   return row.time(field, is_ns ? eval::TimeUnit::kNanoseconds : eval::TimeUnit::kSeconds);
 }
 
-/// Rows `stamp image stamp image` as associate.py writes them, color or depth first: the path tells.
+/// Rows `stamp image stamp image` as associate.py writes them, color or depth first: the path tells. Rows
+/// whose images are not less than 20 ms apart are dropped, as by `pair_images`.
 PairedImages read_associations(const std::filesystem::path& file, FaultLog& faults) {
   const std::string text = eval::read_text_file(file);
   const std::string name = file.string();
@@ -130,14 +132,20 @@ PairedImages read_associations(const std::filesystem::path& file, FaultLog& faul
     const std::size_t color = depth_first ? 2 : 0;
     const std::size_t depth = 2 - color;
     const Timestamp t = association_time(row, color);
+    const double depth_offset_s = seconds_between(t, association_time(row, depth));
+    ++images.color_images;
+    if (std::abs(depth_offset_s) >= kImageAssociation.max_difference_s) return;
     if (!images.times.empty()) row.require_increasing(images.times.back(), t);
     images.times.push_back(t);
     images.files.push_back(FrameFiles{.color = file.parent_path() / row.text(color + 1),
                                       .depth = file.parent_path() / row.text(depth + 1),
-                                      .depth_offset_s = seconds_between(t, association_time(row, depth))});
+                                      .depth_offset_s = depth_offset_s});
   });
-  images.color_images = images.times.size();
-  if (images.times.empty()) throw InputError(name, "lists no images; is the sequence complete?");
+  if (images.color_images == 0) throw InputError(name, "lists no images; is the sequence complete?");
+  if (images.times.empty())
+    throw InputError(name,
+                     "no depth image is less than 20 ms from its color image; pair the images again, or "
+                     "correct the stamps if the clocks of both cameras differ");
   return images;
 }
 

@@ -55,7 +55,7 @@ TEST(TumFormat, ReadsTheListOfAssociatePyInAnyOrderIfThereAreNoOthers) {
     std::string rows;
     for (const char* stamp : {"1.000000", "1.040000", "1.080000"}) {
       const std::string color = std::string(stamp) + " rgb/" + stamp + ".png";
-      const std::string depth = "1.01 depth/" + std::string(stamp) + ".png";
+      const std::string depth = std::string(stamp) + "5 depth/" + stamp + ".png";
       rows += (depth_first ? depth + " " + color : color + " " + depth) + "\n";
     }
     folder.write("associations.txt", rows);
@@ -69,6 +69,20 @@ TEST(TumFormat, ReadsTheListOfAssociatePyInAnyOrderIfThereAreNoOthers) {
     EXPECT_EQ(content.frame_files[1].color.parent_path().filename(), "rgb");
     EXPECT_EQ(content.frame_files[1].depth.parent_path().filename(), "depth");
   }
+}
+
+TEST(TumFormat, PairsOfAssociatePyThatAreFarApartAreDropped) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  std::filesystem::remove(folder.path() / "rgb.txt");
+  const std::string late = "1.0 rgb/1.000000.png 1.045 depth/1.045000.png\n";
+  folder.write("associations.txt", late + "1.04 rgb/1.040000.png 1.045 depth/1.045000.png\n");
+  const SequenceInfo info = open_sequence(folder.path())->info();
+  EXPECT_EQ(info.frame_times, (std::vector<Timestamp>{{1'040'000'000}}));
+  EXPECT_TRUE(has_note(info, "1 of 2 color images have no depth image less than 20 ms away"));
+  folder.write("associations.txt", late);
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
+                     {"associations.txt", "less than 20 ms", "pair the images again"});
 }
 
 TEST(TumFormat, GroundTruthIsOfTheCamera) {
