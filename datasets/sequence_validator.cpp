@@ -222,11 +222,23 @@ std::string kind_of(const Finding& finding) {
   return colon == std::string::npos ? finding.text : finding.location.substr(0, colon);
 }
 
+/// The content without its faulty rows. If they leave too little, the first of them is the error, because
+/// what the reader throws in the end follows from it.
+SequenceContent read_valid_rows(const std::filesystem::path& folder, const OpenOptions& options,
+                                FaultLog& faults) {
+  try {
+    return read_sequence(folder, options, faults);
+  } catch (const InputError&) {
+    if (faults.messages().empty()) throw;
+  }
+  throw InputError(faults.messages().front());
+}
+
 }  // namespace
 
 CheckReport check_sequence(const std::filesystem::path& folder, const CheckOptions& options) {
   FaultLog faults(FaultLog::Mode::kCollect);
-  const SequenceContent content = read_sequence(folder, options.open, faults);
+  const SequenceContent content = read_valid_rows(folder, options.open, faults);
   const SequenceInfo& info = content.info;
   CheckReport report;
   report.name = info.name;

@@ -74,6 +74,18 @@ TEST(SequenceValidator, ReportsEveryFaultyRowWithItsLine) {
   EXPECT_EQ(report.findings.size(), 3U) << report_text(report);
 }
 
+TEST(SequenceValidator, FaultyRowsThatLeaveNothingAreTheError) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  folder.write("rgb.txt", "rgb/1.000000.png\nrgb/1.040000.png\n");
+  expect_input_error([&] { static_cast<void>(check_sequence(folder.path())); },
+                     {"rgb.txt:1", "rgb/1.000000.png"});
+  std::filesystem::remove(folder.path() / "rgb.txt");
+  folder.write("associations.txt", "1700000000050 rgb/1.000000.png 1700000000050 depth/1.005000.png\n");
+  expect_input_error([&] { static_cast<void>(check_sequence(folder.path())); },
+                     {"associations.txt:1", "1700000000050"});
+}
+
 TEST(SequenceValidator, ReportsGaps) {
   const TemporaryFolder folder;
   write_valid_sequence(folder);
