@@ -125,7 +125,11 @@ toml::table parse(const std::filesystem::path& file) {
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
-    throw InputError(file.string(), error.source().begin.line, std::string(error.description()));
+    throw InputError(
+        file.string(), error.source().begin.line,
+        "is not valid TOML (" + std::string(error.description()) +
+            "); if this is another format, write its values into a rig.toml: --rig reads TOML, and "
+            "YAML of Kalibr, OpenVINS, EuRoC, OpenCV, ROS, ORB-SLAM and VINS");
   }
 }
 
@@ -223,7 +227,8 @@ std::optional<DepthCamera> depth_camera_of(const Section& depth) {
 
 OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) throw InputError(file.string(), "no such rig file");
+  require_regular_file(file);
+  if (!std::filesystem::exists(file, ignored)) throw InputError(file.string(), "no such rig file");
   if (is_yaml(file)) return apply_rig_yaml(file, rig);
   const toml::table root = parse(file);
   if (root.empty())

@@ -118,8 +118,9 @@ double SensorYaml::positive(const std::string& key) const {
   return value;
 }
 
-int SensorYaml::positive_int(const std::string& key) const {
-  const double value = number(key);
+int SensorYaml::positive_int(const std::string& key) const { return positive_int(key, number(key)); }
+
+int SensorYaml::positive_int(const std::string& key, double value) const {
   if (value < 1.0 || value > 65535.0 || value != std::floor(value)) {
     fail(key, "must be an integer from 1 to 65535");
   }
@@ -160,12 +161,12 @@ Camera SensorYaml::camera() const {
     fail("camera_model", "is \"" + text("camera_model") +
                              "\", which is not supported; calibrate with pinhole-radtan or pinhole-equi");
   const std::vector<double> size = numbers("resolution");
-  if (size.size() != 2 || size[0] < 1.0 || size[1] < 1.0) fail("resolution", "must be width and height");
+  if (size.size() != 2) fail("resolution", "must be width and height");
   const std::vector<double> values = numbers("intrinsics");
   if (values.size() != 4 || values[0] <= 0.0 || values[1] <= 0.0)
     fail("intrinsics", "must be the four numbers fx, fy, cx, cy");
-  return with_distortion(Camera{.width = static_cast<int>(size[0]),
-                                .height = static_cast<int>(size[1]),
+  return with_distortion(Camera{.width = positive_int("resolution", size[0]),
+                                .height = positive_int("resolution", size[1]),
                                 .fx = values[0],
                                 .fy = values[1],
                                 .cx = values[2],

@@ -50,6 +50,7 @@ class SensorYaml {
   SensorYaml(std::string file, std::string prefix, const YAML::Node& node)
       : file_(std::move(file)), prefix_(std::move(prefix)), node_(node) {}
   [[nodiscard]] YAML::Node require(const std::string& key) const;
+  [[nodiscard]] int positive_int(const std::string& key, double value) const;
 
   std::string file_;
   std::string prefix_;  ///< dotted path of the parent keys, for messages

@@ -151,7 +151,13 @@ TEST(RigFile, TheCameraOfUnregisteredDepthMustBeComplete) {
 }
 
 TEST(RigFile, InvalidTomlAndMissingFilesAreErrors) {
-  expect_rejected("[camera\n", {"rig.toml:1"});
+  expect_rejected("[camera\n", {"rig.toml:1", "not valid TOML"});
+  for (const char* other :
+       {"{\n\"value0\": {}}", "<?xml version=\"1.0\"?>", "# images\n1 PINHOLE 640 480 500"})
+    expect_rejected(other, {"rig.toml:", "not valid TOML", "write its values into a rig.toml", "Kalibr"});
+  const TemporaryFolder folder;
+  expect_input_error([&] { static_cast<void>(apply_rig_file(folder.path(), Rig{})); },
+                     {folder.path().string(), "is a folder"});
   expect_input_error([] { static_cast<void>(apply_rig_file("/nonexistent/rig.toml", Rig{})); },
                      {"no such rig file"});
 }

@@ -216,6 +216,12 @@ TEST(RigYaml, WhatCannotBeReadIsRefusedWithItsKey) {
       "cam0:\n  camera_model: pinhole\n  distortion_coeffs: [0.9]\n  distortion_model: fov\n"
       "  intrinsics: [5, 5, 4, 3]\n  resolution: [8, 6]\n",
       {"rig.yaml", "cam0.distortion_model", "\"fov\"", "radtan"});
+  for (const char* width : {"1e12", "320.7", "0"})
+    expect_refused(
+        "cam0:\n  camera_model: pinhole\n  distortion_model: none\n  distortion_coeffs: []\n"
+        "  intrinsics: [5, 5, 4, 3]\n  resolution: [" +
+            std::string(width) + ", 6]\n",
+        {"\"cam0.resolution\"", "integer from 1 to 65535"});
   expect_refused("cam0:\n  camera_model: pinhole\n  intrinsics: [5, 5, 4]\n  resolution: [8, 6]\n",
                  {"rig.yaml", "cam0.intrinsics", "four numbers"});
   expect_refused(
