@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "eval/io/column_header.h"
 
@@ -50,9 +51,11 @@ struct NamedText {
 void require_unit(const NamedText& source, const eval::TableHeader& header, eval::Quantity quantity,
                   const SensorRange& range) {
   const std::string unit = eval::unit_of(header, quantity);
-  const bool is_other = quantity == eval::Quantity::kAngularVelocity
-                            ? unit.find("deg") != std::string::npos || unit.find("dps") != std::string::npos
-                            : unit == "g" || unit == "mg" || unit.find("g ") == 0;
+  constexpr std::array<std::string_view, 4> kDegrees{"deg", "dps", "\u00b0", "\u00ba"};  // degree, ordinal
+  const bool is_other =
+      quantity == eval::Quantity::kAngularVelocity
+          ? std::ranges::any_of(kDegrees, [&](auto part) { return unit.find(part) != std::string::npos; })
+          : unit == "g" || unit == "mg" || unit.find("g ") == 0;
   if (!is_other) return;
   throw InputError(source.name, header.line,
                    fmt::format("the header states the unit {} of the {}; convert the file to {}", unit,

@@ -102,6 +102,7 @@ TEST(ImuFile, AHeaderWithOtherUnitsOrColumnsIsAnError) {
     };
   };
   expect_input_error(read("#t,wx [deg/s],wy,wz,ax,ay,az"), {"imu.csv:1", "deg/s", "rad/s"});
+  expect_input_error(read("#t,wx [\u00b0/s],wy,wz,ax,ay,az"), {"imu.csv:1", "unit \u00b0/s", "rad/s"});
   expect_input_error(read("#t,wx,wy,wz,ax [g],ay [g],az [g]"), {"imu.csv:1", "unit g", "m/s^2"});
   expect_input_error(read("time,a,b,c,d,e,f"), {"imu.csv:1", "the header does not name"});
   expect_input_error(read("t (us),wx,wy,wz,ax,ay,az"), {"imu.csv:1", "us"});
