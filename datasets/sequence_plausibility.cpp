@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/geometry/so3.h"
@@ -165,6 +166,17 @@ std::optional<double> rate_ratio(const SequenceInfo& info) {
   return product / squares;
 }
 
+/// mm, TUM RGB-D, cm, 0.1 mm: the most common one first.
+constexpr std::array<double, 4> kUsualUnitsPerM{1000.0, 5000.0, 100.0, 10'000.0};
+
+/// The usual units per meter that are nearest to an estimate; the estimate if none is near.
+double likely_units(double estimate) {
+  constexpr double kMaxFactor = 1.5;  // errors of the estimate; the usual units differ by 2 or more
+  const auto distance = [estimate](double units) { return std::abs(std::log(units / estimate)); };
+  const double nearest = *std::ranges::min_element(kUsualUnitsPerM, {}, distance);
+  return distance(nearest) < std::log(kMaxFactor) ? nearest : estimate;
+}
+
 }  // namespace
 
 std::vector<std::string> imu_unit_findings(const SequenceInfo& info) {
@@ -231,13 +243,17 @@ std::optional<std::string> ImagePlausibility::depth_unit_finding() const {
   const double near_m = percentile(depths_m_, 0.05);
   const double far_m = percentile(depths_m_, 0.95);
   if (near_m >= kLeastDepth_m && far_m <= kLargestDepth_m) return std::nullopt;
-  const double factor = far_m > kLargestDepth_m ? 5.0 : 0.2;
-  return fmt::format(
+  const std::string found = fmt::format(
       "90 % of the measurements are from {:.2f} to {:.2f} m with {:g} units per meter; is the unit another "
-      "one? With "
-      "[depth] scale = {:g} in a rig.toml, they are from {:.2f} to {:.2f} m",
-      near_m, far_m, info_.rig.depth_units_per_m, factor * info_.rig.depth_units_per_m, near_m / factor,
-      far_m / factor);
+      "one?",
+      near_m, far_m, info_.rig.depth_units_per_m);
+  for (const double units_per_m : kUsualUnitsPerM) {
+    const double factor = units_per_m / info_.rig.depth_units_per_m;
+    if (near_m / factor < kLeastDepth_m || far_m / factor > kLargestDepth_m) continue;
+    return found + fmt::format(" With [depth] scale = {:g} in a rig.toml, they are from {:.2f} to {:.2f} m",
+                               units_per_m, near_m / factor, far_m / factor);
+  }
+  return found + " [depth] scale in a rig.toml sets the units per meter";
 }
 
 namespace {
@@ -459,12 +475,10 @@ std::optional<std::string> ImagePlausibility::depth_motion_finding() const {
   const double correlation = all.both / std::sqrt(all.images * all.inertial);
   const double scale = all.both / all.images;
   if (scale > 1.0 / kMinScaleFinding && scale < kMinScaleFinding) return std::nullopt;
-  const double factor = scale > 1.0 ? 5.0 : 0.2;
   return fmt::format(
-      "by the accelerometer, the camera moves {:.1f} times as far as the images show with {:g} units per "
-      "meter "
-      "(correlation {:.2f}); is [depth] scale = {:g} in a rig.toml right?",
-      scale, info_.rig.depth_units_per_m, correlation, info_.rig.depth_units_per_m / factor);
+      "by the accelerometer, the camera moves {:.2g} times as far as the images show with {:g} units per "
+      "meter (correlation {:.2f}); is [depth] scale = {:.4g} in a rig.toml right?",
+      scale, info_.rig.depth_units_per_m, correlation, likely_units(info_.rig.depth_units_per_m / scale));
 }
 
 double ImagePlausibility::correlation_at(double offset_s, std::span<const Turn> turns,

@@ -54,6 +54,7 @@ TEST(DepthUnitFinding, MillimetersAreNotFiveThousandths) {
   EXPECT_FALSE(finding_of(10000, 5000.0));
   EXPECT_NE(finding_of(1400, 5000.0)->find("scale = 1000 "), std::string::npos);   // 0.28 m instead of 1.4 m
   EXPECT_NE(finding_of(15000, 1000.0)->find("scale = 5000 "), std::string::npos);  // 15 m instead of 3 m
+  EXPECT_NE(finding_of(3000, 100.0)->find("scale = 1000 "), std::string::npos);    // 30 m instead of 3 m
   EXPECT_FALSE(finding_of(0, 1000.0));
 }
 
@@ -227,6 +228,9 @@ TEST(MotionFindings, UnitsAreFoundWithoutGroundTruth) {
   // Half of these rates exceed any rotation by hand, which the samples alone tell.
   ASSERT_TRUE(small.depth);
   EXPECT_NE(small.depth->find("scale = 1000 "), std::string::npos) << *small.depth;
+  const MotionFindings centimeters = findings_of_motion(1.0, 0.1);  // depth of 15 m
+  ASSERT_TRUE(centimeters.depth);
+  EXPECT_NE(centimeters.depth->find("scale = 1000 "), std::string::npos) << *centimeters.depth;
   const MotionFindings slow = findings_of_motion(180.0 / M_PI, 0.2, 0.15);
   ASSERT_TRUE(slow.gyro);
   EXPECT_NE(slow.gyro->find("deg/s"), std::string::npos) << *slow.gyro;
