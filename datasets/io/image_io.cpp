@@ -6,7 +6,10 @@
 #include <turbojpeg.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -83,30 +86,43 @@ std::optional<PngFile> read_header(std::string_view data) {
                  .compressed = {}};
 }
 
-/// Reads the chunks up to IEND. Checksums are those that libpng requires, too.
+struct PngChunk {
+  std::string_view type;
+  std::string_view data;
+  bool is_intact = false;  ///< by its checksum, which libpng requires, too, of all but ancillary chunks
+};
+
+/// Moves the first chunk out of `bytes`; nullopt if it is truncated.
+std::optional<PngChunk> take_chunk(std::string_view& bytes) {
+  if (bytes.size() < kChunkOverhead) return std::nullopt;
+  const std::size_t length = big_endian(bytes);
+  if (length > bytes.size() - kChunkOverhead) return std::nullopt;
+  const PngChunk chunk{
+      .type = bytes.substr(4, 4),
+      .data = bytes.substr(8, length),
+      .is_intact = chunk_checksum(bytes.substr(4, 4 + length)) == big_endian(bytes.substr(8 + length))};
+  bytes.remove_prefix(kChunkOverhead + length);
+  return chunk;
+}
+
+/// Reads the chunks up to IEND.
 std::optional<PngFile> read_chunks(std::string_view bytes) {
   if (!bytes.starts_with(kSignature)) return std::nullopt;
   bytes.remove_prefix(kSignature.size());
   std::optional<PngFile> file;
-  while (bytes.size() >= kChunkOverhead) {
-    const std::size_t length = big_endian(bytes);
-    if (length > bytes.size() - kChunkOverhead) return std::nullopt;
-    const std::string_view type = bytes.substr(4, 4);
-    const std::string_view data = bytes.substr(8, length);
-    if (chunk_checksum({type.data(), 4 + length}) != big_endian(bytes.substr(8 + length)))
-      return std::nullopt;
+  while (const std::optional<PngChunk> chunk = take_chunk(bytes)) {
+    if (!chunk->is_intact) return std::nullopt;
     if (!file) {
-      if (type != "IHDR") return std::nullopt;
-      file = read_header(data);
+      if (chunk->type != "IHDR") return std::nullopt;
+      file = read_header(chunk->data);
       if (!file) return std::nullopt;
-    } else if (type == "IDAT") {
-      file->compressed += data;
-    } else if (type == "IEND") {
+    } else if (chunk->type == "IDAT") {
+      file->compressed += chunk->data;
+    } else if (chunk->type == "IEND") {
       return file;
-    } else if (type == "tRNS" || type == "PLTE") {
+    } else if (chunk->type == "tRNS" || chunk->type == "PLTE") {
       return std::nullopt;
     }
-    bytes.remove_prefix(kChunkOverhead + length);
   }
   return std::nullopt;
 }
@@ -233,16 +249,19 @@ const ImageModule& image_module() {
   return module;
 }
 
-/// Whether a PNG has its final IEND chunk. Checked before decoding, because libpng handles truncated files by
-/// longjmp, which leaks memory of the calling library, and prints to stderr.
-bool has_png_end(const std::filesystem::path& file) {
-  constexpr std::streamoff kTail = 64;  // the chunk is 12 bytes; some writers pad
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  const std::streamoff size = in.tellg();
-  std::string tail(static_cast<std::size_t>(std::clamp(size, std::streamoff{0}, kTail)), '\0');
-  in.seekg(size - static_cast<std::streamoff>(tail.size()));
-  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
-  return in && tail.find("IEND") != std::string::npos;
+/// What is wrong with the chunks of a PNG; empty if they are intact. Checked before decoding, because libpng
+/// handles such files by longjmp, which leaks memory of the calling library, and prints to stderr.
+std::string png_problem(std::string_view bytes) {
+  if (!bytes.starts_with(kSignature)) return "is not a PNG; copy the file again";
+  bytes.remove_prefix(kSignature.size());
+  while (const std::optional<PngChunk> chunk = take_chunk(bytes)) {
+    if (chunk->type == "IEND") return "";
+    const bool is_critical = std::isupper(static_cast<unsigned char>(chunk->type[0])) != 0;
+    if (is_critical && !chunk->is_intact)
+      return fmt::format("is damaged (the checksum of its chunk {} is wrong); copy the file again",
+                         escaped_utf8(chunk->type));
+  }
+  return "is a truncated PNG; copy the file again";
 }
 
 constexpr std::string_view kJpegSignature = "\xff\xd8\xff";
@@ -267,8 +286,9 @@ LoadedImage load_image(const std::filesystem::path& file, int depth) {
     throw InputError(file.string(), "is a pointer of Git LFS, not the image; run `git lfs pull`");
   const bool is_jpeg = beginning.starts_with(kJpegSignature);
   const bool is_png = file.extension() == ".png" || file.extension() == ".PNG";
-  if (is_png && !is_jpeg && !has_png_end(file)) {
-    throw InputError(file.string(), "is truncated or not a PNG; copy the file again");
+  if (is_png && !is_jpeg) {
+    if (const std::string problem = png_problem(file_bytes(file).value_or("")); !problem.empty())
+      throw InputError(file.string(), problem);
   }
   // By its content: OpenImageIO selects the decoder by the extension.
   LoadedImage image = is_png && is_jpeg ? image_module().decode(file_bytes(file).value_or(""), depth)
@@ -282,8 +302,8 @@ LoadedImage load_bytes(std::string_view bytes, const std::string& name, int dept
   const bool is_png = bytes.starts_with("\x89PNG");
   if (!is_png && !bytes.starts_with(kJpegSignature))
     throw InputError(name, "is neither a PNG nor a JPEG image");
-  if (is_png && bytes.find("IEND") == std::string_view::npos)
-    throw InputError(name, "is a truncated PNG; copy the file again");
+  if (const std::string problem = is_png ? png_problem(bytes) : ""; !problem.empty())
+    throw InputError(name, problem);
   LoadedImage image = image_module().decode(bytes, depth);
   if (!image.problem.empty()) throw InputError(name, image.problem);
   return image;

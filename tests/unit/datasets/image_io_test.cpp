@@ -157,6 +157,17 @@ TEST(ImageIo, ANamedPipeIsAnErrorAndNotWaitedFor) {
   expect_input_error([&] { static_cast<void>(read_image(pipe)); }, {"image.png", "no such image"});
 }
 
+TEST(ImageIo, ADamagedPngIsOneErrorAndTheLibraryPrintsNothing) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.png";
+  write_png(file, noise_image(CV_8UC3));
+  std::fstream(file, std::ios::binary | std::ios::in | std::ios::out).seekp(3000).write("damaged", 7);
+  testing::internal::CaptureStderr();
+  expect_input_error([&] { static_cast<void>(read_image(file)); },
+                     {"a.png", "is damaged", "checksum of its chunk IDAT", "copy the file again"});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(ImageIo, TextAndEmptyFilesAreErrors) {
   const TemporaryFolder folder;
   const auto text = folder.write("text.png", "not an image");
