@@ -95,14 +95,15 @@ std::vector<MetricSeries> with_pooled(std::vector<MetricSeries> list,
   return list;
 }
 
-/// Whether the pairs of a metric over all sequences of a variant are still too few: pooled over the variants.
-std::vector<MetricSeries> with_all_pools(std::vector<MetricSeries> accuracy) {
-  accuracy = with_pooled(std::move(accuracy), [](const MetricSeries& series) { return series.variant; });
-  const bool can_reject = std::ranges::any_of(accuracy, [](const MetricSeries& series) {
+/// Pooled over the sequences of each variant; if the pairs are still too few, over the variants instead.
+std::vector<MetricSeries> with_all_pools(const std::vector<MetricSeries>& accuracy) {
+  std::vector<MetricSeries> of_variants =
+      with_pooled(accuracy, [](const MetricSeries& series) { return series.variant; });
+  const bool can_reject = std::ranges::any_of(of_variants, [](const MetricSeries& series) {
     return series.decides && is_tested(series) && smallest_p_of(series) <= kSignificance;
   });
-  if (can_reject) return accuracy;
-  return with_pooled(std::move(accuracy), [](const MetricSeries&) { return std::string(); });
+  if (can_reject) return of_variants;
+  return with_pooled(accuracy, [](const MetricSeries&) { return std::string(); });
 }
 
 /// Whether a cost changed that the runs were not made to measure.

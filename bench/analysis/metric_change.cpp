@@ -419,10 +419,31 @@ std::optional<eval::RelativeChange> tested_change(const MetricSeries& series, do
   return change;
 }
 
-double largest_change(const std::vector<eval::Pair>& pairs, bool is_absolute) {
+/// head - base in the unit of the metric.
+struct Difference {
+  double estimate = 0.0;
+  std::optional<eval::Interval> interval;
+};
+
+/// Of the same pairs or replicates as the test: the medians of all values say nothing about them if the
+/// sequences have different levels.
+Difference difference_of(const MetricSeries& series, const MetricChange& change) {
+  if (change.is_absolute) return {change.change.median, change.change.interval};
+  if (series.test == ChangeTest::kReplicates) {
+    const std::optional<eval::RankSum> shift = eval::rank_sum(series.base, series.head, 1.0 - kSignificance);
+    return shift ? Difference{shift->shift, shift->interval} : Difference{};
+  }
+  const std::optional<eval::PairedDifference> paired =
+      eval::paired_difference(series.pairs, 1.0 - kSignificance);
+  return paired ? Difference{paired->median, paired->interval} : Difference{};
+}
+
+/// The largest change of a pair whose difference is at least the floor.
+double largest_change(const std::vector<eval::Pair>& pairs, bool is_absolute, double floor) {
   double largest = 0.0;
   for (const eval::Pair& pair : pairs) {
     const double difference = std::abs(pair.changed - pair.base);
+    if (difference < floor) continue;
     largest = std::max(largest, is_absolute ? difference : difference / std::abs(pair.base));
   }
   return largest;
@@ -445,15 +466,13 @@ double margin_of(const MetricChange& change, const MetricGate& gate) {
   return change.is_absolute ? std::max(gate.floor, gate.margin * std::abs(change.base_median)) : gate.margin;
 }
 
-/// Whether the change is smaller than what matters at all.
-bool is_below_floor(const MetricChange& change, const MetricGate& gate) {
-  const double amount = change.is_absolute ? change.change.median : change.head_median - change.base_median;
-  return std::abs(amount) < gate.floor;
+bool is_relevant(const MetricChange& change, const MetricGate& gate) {
+  return std::abs(change.difference) >= gate.floor && change.change.median != 0.0 &&
+         std::abs(change.change.median) >= margin_of(change, gate);
 }
 
-bool is_relevant(const MetricChange& change, const MetricGate& gate) {
-  return !is_below_floor(change, gate) && change.change.median != 0.0 &&
-         std::abs(change.change.median) >= margin_of(change, gate);
+bool is_within(const std::optional<eval::Interval>& interval, double limit) {
+  return interval && interval->low >= -limit && interval->high <= limit;
 }
 
 }  // namespace
@@ -479,8 +498,12 @@ std::optional<MetricChange> change_of(const MetricSeries& series, const TestFami
                       .test = series.test,
                       .level = series.decides ? family.level : 0.0};
   if (series.decides) change.adjusted_interval = tested_change(series, 1.0 - family.level)->interval;
-  change.largest = largest_change(series.pairs, change.is_absolute);
-  change.changed = is_relevant(change, *series.descriptor->gate);
+  const MetricGate& gate = *series.descriptor->gate;
+  const Difference difference = difference_of(series, change);
+  change.difference = difference.estimate;
+  change.difference_interval = difference.interval;
+  change.largest = largest_change(series.pairs, change.is_absolute, gate.floor);
+  change.changed = is_relevant(change, gate);
   change.decides = series.decides;
   if (is_tested(series)) {
     change.smallest_p = smallest_p_of(series);
@@ -519,7 +542,6 @@ std::string amount_text(const MetricChange& change, double amount) {
 
 ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric) {
   const MetricGate& gate = *metric.gate;
-  if (is_below_floor(change, gate)) return ChangeClass::kSame;
   const double sign =
       metric.direction == MetricDirection::kLargerIsBetter ? -1.0 : 1.0;  // so that positive is worse
   const double margin = margin_of(change, gate);
@@ -529,9 +551,9 @@ ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric)
   if (change.test == ChangeTest::kExact) return relevant ? direction : ChangeClass::kSame;
   if (relevant && change.change.p_value <= change.level) return direction;
   const double limit = gate.family == MetricFamily::kAccuracy ? margin : 0.0;
-  const std::optional<eval::Interval>& interval = change.change.interval;
-  const bool is_same =
-      interval ? interval->low >= -margin && interval->high <= margin : change.largest <= limit;
+  const bool is_same = change.change.interval ? is_within(change.change.interval, margin) ||
+                                                    is_within(change.difference_interval, gate.floor)
+                                              : change.largest <= limit;
   return is_same ? ChangeClass::kSame : ChangeClass::kInconclusive;
 }
 

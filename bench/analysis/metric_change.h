@@ -133,7 +133,10 @@ struct MetricChange {
   double level = kSignificance;  ///< largest p-value that is significant, see `TestFamily`
   /// Confidence interval at 1 - `level`; nullopt if there are too few pairs for it.
   std::optional<eval::Interval> adjusted_interval{};
-  double largest = 0.0;     ///< largest absolute change of a pair, relative unless `is_absolute`
+  double difference = 0.0;  ///< estimate of head - base, in the unit of the metric, of the tested values
+  std::optional<eval::Interval> difference_interval{};  ///< at 95 %; nullopt if there are too few values
+  /// Largest absolute change of a pair that differs by at least the floor, relative unless `is_absolute`.
+  double largest = 0.0;
   bool changed = false;     ///< by at least margin and floor of the metric, significant or not
   double smallest_p = 1.0;  ///< that the number of pairs can reach
   std::size_t needed = 0;   ///< pairs per input that a class requires; 0 if there are enough
@@ -145,14 +148,15 @@ struct MetricChange {
 /// @param amount the estimate of a change, or an end of its interval
 [[nodiscard]] std::string amount_text(const MetricChange& change, double amount);
 
-/// Classifies a change. With the estimate m of the relative change (positive = worse), its p-value, its 95 %
-/// interval [l, u], and the margin and floor of the metric:
+/// Classifies a change. With the estimates m of the relative change (positive = worse) and d of the
+/// difference in the unit of the metric, the p-value, the 95 % intervals [l, u] of m and [dl, du] of d, and
+/// the margin and floor of the metric:
 ///
-///   kSame          |difference of the medians| < floor
-///   kWorse         m >= margin and p <= level
-///   kBetter        m <= -margin and p <= level
-///   kSame          -margin <= l and u <= margin; without interval: no pair changed (cost), or
-///                  none by more than the margin (accuracy, which has no noise apart from rounding)
+///   kWorse         m >= margin, |d| >= floor and p <= level
+///   kBetter        m <= -margin, |d| >= floor and p <= level
+///   kSame          -margin <= l and u <= margin, or -floor <= dl and du <= floor; without intervals: of the
+///                  pairs that differ by the floor or more, none changed (cost), or none by more than the
+///                  margin (accuracy, which has no noise apart from rounding)
 ///   kInconclusive  otherwise
 ///
 /// If a value of base is 0 there is no relative change: m, l and u are differences in the unit of the metric,

@@ -121,6 +121,31 @@ std::vector<MissingResult> missing_scopes(const PairedRuns& runs) {
   return missing;
 }
 
+/// Subjects of which head has less than half of the runs of base, with or without a counterpart: those that
+/// are there may be the ones that did not fail, or the first ones of an interrupted plan.
+std::vector<MissingResult> missing_runs(const PairedRuns& runs) {
+  std::map<std::string, MissingResult> counts;
+  const auto count_of = [&](const StoredRun& run) -> MissingResult& {
+    return counts[subject_label(run.identity)];
+  };
+  for (const RunPair& pair : runs.pairs) {
+    ++count_of(*pair.base).base;
+    ++count_of(*pair.head).head;
+  }
+  for (const StoredRun* run : runs.only_in_base) ++count_of(*run).base;
+  for (const StoredRun* run : runs.only_in_head) ++count_of(*run).head;
+  std::vector<MissingResult> missing;
+  for (auto& [subject, count] : counts) {
+    if (count.head == 0 || 2 * count.head >= count.base) continue;  // none: missing_scopes
+    missing.push_back({.what = "runs",
+                       .subject = subject,
+                       .base = count.base,
+                       .head = count.head,
+                       .result = ChangeClass::kInconclusive});
+  }
+  return missing;
+}
+
 }  // namespace
 
 std::string variant_label(const RunIdentity& identity) {
@@ -145,6 +170,7 @@ ChangeClass loss_class(std::size_t lost, std::size_t gained) {
 
 std::vector<MissingResult> missing_results(const PairedRuns& runs) {
   std::vector<MissingResult> missing = missing_scopes(runs);
+  for (MissingResult& few : missing_runs(runs)) missing.push_back(std::move(few));
   const LossTable table = lost_names(runs);
   for (const auto& [key, entry] : table.subjects) {
     const auto& [variant, count] = entry;

@@ -28,20 +28,22 @@ namespace stillpoint::bench {
 
 /// Something that base has and head lacks.
 struct MissingResult {
-  std::string what;      ///< "variant", "sequence", "metric ate_rmse_m" or "module window_solve"
+  std::string what;      ///< "variant", "sequence", "runs", "metric ate_rmse_m" or "module window_solve"
   std::string subject;   ///< variant, "variant on sequence", or sequence
   std::size_t base = 0;  ///< runs of base that have it
   std::size_t head = 0;  ///< runs of head that have it, among the counterparts of these
   /// kMissing if head lacks it in all runs, or more often by the rule above over all sequences of the
-  /// variant; kInconclusive if more often, but not by this rule; else kSame.
+  /// variant; kInconclusive if more often, but not by this rule, or if head has less than half of the runs
+  /// of a variant on a sequence; else kSame.
   ChangeClass result = ChangeClass::kMissing;
 };
 
 /// Whether a stored metric or module must have a value if an earlier run has one.
 [[nodiscard]] bool must_exist(const std::string& name);
 
-/// Variants and sequences without any run of head first, then metrics and modules of pairs that succeeded on
-/// both sides. Metrics of the machine (`MetricSource::kMachine`, `kDevice`), and those whose absence is good
+/// Variants and sequences without any run of head first, then those with few runs of head, then metrics and
+/// modules of pairs that succeeded on both sides. Metrics of the machine (`MetricSource::kMachine`,
+/// `kDevice`), and those whose absence is good
 /// (`MetricGate::absent_is_good`) are not listed.
 [[nodiscard]] std::vector<MissingResult> missing_results(const PairedRuns& runs);
 

@@ -254,6 +254,60 @@ TEST(ComparisonAccuracy, AChangeFromZeroOfOneRunOrBelowTheFloorIsNotWorse) {
   EXPECT_EQ(compare_runs(none.base, none.head).result(), ChangeClass::kSame);
 }
 
+TEST(ComparisonAccuracy, OutliersInTheMinorityOfTheReplicatesAreNotTheSame) {
+  Sides sides = replicates(8, 1.0);
+  for (std::size_t i = 0; i < 3; ++i) sides.head[i].metrics.front().value = 1.0;  // 100 times the error
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  EXPECT_NE(change_on(comparison, "vo on a").result, ChangeClass::kSame);
+}
+
+/// Eight timing runs on each of three sequences with different levels, of which the last one changes.
+TEST(ComparisonAccuracy, ATimeThatDoublesOnTheSlowestOfThreeSequencesIsWorse) {
+  Sides sides;
+  const std::pair<const char*, double> levels[] = {{"a", 1.0}, {"b", 5.0}, {"c", 20.0}};
+  for (const auto& [sequence, ms] : levels) {
+    for (int i = 1; i <= 8; ++i) {
+      for (const bool is_base : {true, false}) {
+        StoredRun run = compared_run(sequence, 0.01, i, is_base ? "base" : "head");
+        run.identity.kind = "timing";
+        const double factor = is_base ? 1.0 : (ms == 20.0 ? 2.0 : 1.0001);
+        run.costs = {{.module = "window_solve", .per = "call", .mean_ms = ms * factor}};
+        (is_base ? sides.base : sides.head).push_back(std::move(run));
+      }
+    }
+  }
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  const auto change = std::ranges::find(comparison.changes, "window_solve", &MetricChange::metric);
+  ASSERT_NE(change, comparison.changes.end());
+  // The pooled values have nearly equal medians: those of the unchanged sequence "b".
+  EXPECT_LT(change->head_median - change->base_median, 0.001);
+  EXPECT_EQ(change->result, ChangeClass::kWorse);
+}
+
+/// One run on each of several sequences, with another error at head on the first ones.
+Sides single_runs(int sequences, int changed, double factor) {
+  Sides sides;
+  for (int i = 0; i < sequences; ++i) {
+    const std::string sequence(1, static_cast<char>('a' + i));
+    sides.base.push_back(compared_run(sequence, 0.01, 1));
+    sides.head.push_back(compared_run(sequence, i < changed ? 0.01 * factor : 0.01, 1, "head"));
+  }
+  return sides;
+}
+
+TEST(ComparisonAccuracy, PairsThatArePooledCountOnce) {
+  const Sides sides = single_runs(13, 3, 2.0);
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  std::size_t pools = 0;
+  for (const MetricChange& change : comparison.changes) {
+    if (!change.subject.ends_with(" on all sequences") || change.metric != "ate_rmse_m") continue;
+    ++pools;
+    EXPECT_EQ(change.change.count, 13u);
+  }
+  EXPECT_EQ(pools, 1u);
+  EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
+}
+
 TEST(ComparisonAccuracy, AChangeFromZeroInTheMinorityOfTheRunsIsNotHiddenByTheMedian) {
   Sides sides = confidences(20, 20, 0.0);
   for (std::size_t i = 0; i < 9; ++i) sides.head[i].metrics.front().value = 0.6;

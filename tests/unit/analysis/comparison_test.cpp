@@ -16,6 +16,8 @@ MetricChange change_of(double median, double half_width, double p_value) {
                      .median = median,
                      .p_value = p_value,
                      .interval = eval::Interval{median - half_width, median + half_width}},
+          .difference = median,
+          .difference_interval = eval::Interval{median - half_width, median + half_width},
           .largest = std::abs(median) + half_width};
 }
 
@@ -56,8 +58,14 @@ TEST(Classify, ComparesExactCountsWithTheMarginOnly) {
 
 TEST(Classify, IgnoresDifferencesBelowTheFloor) {
   MetricDescriptor metric = kError;
-  metric.gate->floor = 0.2;  // the medians differ by 0.1
+  metric.gate->floor = 0.2;  // the interval of the difference is 0.05 to 0.15
   EXPECT_EQ(classify(change_of(0.10, 0.05, 0.01), metric), ChangeClass::kSame);
+}
+
+TEST(Classify, ADifferenceThatMayExceedTheFloorIsNotTheSame) {
+  MetricDescriptor metric = kError;
+  metric.gate->floor = 0.2;
+  EXPECT_EQ(classify(change_of(0.10, 0.15, 0.01), metric), ChangeClass::kInconclusive);
 }
 
 TEST(Classify, WithoutIntervalAccuracyIsTheSameWithinTheMarginAndACostIfItIsEqual) {

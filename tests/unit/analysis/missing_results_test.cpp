@@ -61,7 +61,7 @@ TEST(MissingResults, AVariantIsNamedOnceOrWithItsSequence) {
   }
   ASSERT_EQ(sides.compared().missing.size(), 1u);
   EXPECT_EQ(sides.compared().missing.front().subject, "vio");
-  sides.head.push_back(sides.base.back());  // on "b" only
+  sides.head.insert(sides.head.end(), sides.base.end() - 2, sides.base.end());  // on "b" only
   ASSERT_EQ(sides.compared().missing.size(), 1u);
   EXPECT_EQ(sides.compared().missing.front().subject, "vio on a");
   EXPECT_EQ(sides.compared().result(), ChangeClass::kMissing);
@@ -178,6 +178,24 @@ TEST(MissingResults, ASequenceOnWhichAllRunsFailIsWorseAlsoIfAnotherSucceedsAgai
   for (std::size_t i = 0; i < 20; ++i) sides.head[i].outcome = Outcome::kLost;
   for (std::size_t i = 20; i < 40; ++i) sides.base[i].outcome = Outcome::kLost;
   EXPECT_EQ(sides.compared().result(), ChangeClass::kWorse);
+}
+
+TEST(MissingResults, LessThanHalfOfTheRunsOfASequenceIsInconclusive) {
+  std::vector<StoredRun> base;
+  for (int i = 1; i <= 10; ++i) base.push_back(compared_run("a", 0.01, i));
+  const auto result_with = [&](int runs) {
+    std::vector<StoredRun> head;
+    for (int i = 1; i <= runs; ++i) head.push_back(compared_run("a", 0.01, i, "head"));
+    return compare_runs(base, head);
+  };
+  const Comparison few = result_with(4);
+  ASSERT_EQ(few.missing.size(), 1u);
+  EXPECT_EQ(few.missing.front().what, "runs");
+  EXPECT_EQ(few.missing.front().subject, "vo on a");
+  EXPECT_EQ(few.missing.front().base, 10u);
+  EXPECT_EQ(few.missing.front().head, 4u);
+  EXPECT_EQ(few.result(), ChangeClass::kInconclusive);
+  EXPECT_TRUE(result_with(5).missing.empty());
 }
 
 }  // namespace
