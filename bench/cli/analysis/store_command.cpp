@@ -309,13 +309,19 @@ int collect(const StoreArguments& arguments) {
   return kExitOk;
 }
 
-void print_merge(const MergeReport& report) {
+/// @return findings if runs contradict those of the store
+int print_merge(const MergeReport& report) {
   std::cout << fmt::format("{} runs added, {} already present\n", report.added, report.present);
+  if (report.contradicting.empty()) return kExitOk;
+  std::cout << fmt::format(
+      "{} of these ended with other results there, which are kept; put the others into "
+      "a store of their own:\n  {}\n",
+      report.contradicting.size(), fmt::join(report.contradicting, "\n  "));
+  return kExitFindings;
 }
 
 int merge(const StoreArguments& arguments) {
-  print_merge(merge_stores(arguments.file, arguments.store));
-  return kExitOk;
+  return print_merge(merge_stores(arguments.file, arguments.store));
 }
 
 int export_tidy(const StoreArguments& arguments) {
@@ -348,25 +354,22 @@ int import_from(const StoreArguments& arguments) {
   const EvoNames& names = arguments.names;
   if (is_result_source(arguments.file)) {
     require_unset({{"--sequence", names.sequence}}, arguments.file);
-    print_merge(import_results({.path = arguments.file,
-                                .results = arguments.results,
-                                .truth = arguments.truth,
-                                .system = names.system,
-                                .fit_scale = arguments.fit_scale},
-                               arguments.store));
-    return kExitOk;
+    return print_merge(import_results({.path = arguments.file,
+                                       .results = arguments.results,
+                                       .truth = arguments.truth,
+                                       .system = names.system,
+                                       .fit_scale = arguments.fit_scale},
+                                      arguments.store));
   }
   require_unset({{"--results", arguments.results},
                  {"--truth", arguments.truth},
                  {"--fit-scale", arguments.fit_scale ? "set" : ""}},
                 arguments.file);
   if (is_zip_file(arguments.file)) {
-    print_merge(import_evo(arguments.file, arguments.store, names));
-    return kExitOk;
+    return print_merge(import_evo(arguments.file, arguments.store, names));
   }
   require_unset({{"--system", names.system}, {"--sequence", names.sequence}}, arguments.file);
-  print_merge(import_store(eval::read_text_file(arguments.file), arguments.file, arguments.store));
-  return kExitOk;
+  return print_merge(import_store(eval::read_text_file(arguments.file), arguments.file, arguments.store));
 }
 
 int salvage(const StoreArguments& arguments) {

@@ -131,20 +131,6 @@ GarbageReport collect_garbage(const fs::path& file) {
   return report;
 }
 
-MergeReport merge_stores(const fs::path& from, const fs::path& into) {
-  if (fs::exists(into) && fs::equivalent(from, into)) throw InputError(into.string(), "is the same store");
-  const Store source(from);
-  StoreWriter writer(into);
-  MergeReport report;
-  for (const StoredRun& run : source.runs()) {
-    const bool is_added = add_run(writer, run.identity, outcome_from(source, run));
-    ++(is_added ? report.added : report.present);
-  }
-  for (const StoredPlan& plan : source.plans()) writer.record_plan(plan);
-  write_acceptances(into, source.acceptances());
-  return report;
-}
-
 namespace {
 
 /// Attachments that contain times, or messages with paths.
@@ -168,16 +154,22 @@ std::string manifest_content(const std::string& manifest) {
   return json.dump();
 }
 
-/// What is compared of a run: text by name. Numbers are compared bit by bit.
-std::map<std::string, std::string> content_of(const Store& store, const StoredRun& run) {
-  std::map<std::string, std::string> content = {{"outcome", outcome_name(run.outcome)},
-                                                {"detail", run.detail},
-                                                {"manifest", manifest_content(store.manifest(run))}};
-  for (const Metric& metric : run.metrics) {
+/// What does not depend on the machine: text by name. Numbers are compared bit by bit.
+std::map<std::string, std::string> results_of(Outcome outcome, const std::vector<Metric>& metrics) {
+  std::map<std::string, std::string> results = {{"outcome", outcome_name(outcome)}};
+  for (const Metric& metric : metrics) {
     if (depends_on_machine(metric)) continue;
-    content["metric " + metric.name + " (" + metric.protocol + ")"] =
+    results["metric " + metric.name + " (" + metric.protocol + ")"] =
         fmt::format("{} {}", metric.value, metric.unit);
   }
+  return results;
+}
+
+/// What is compared of a run: text by name.
+std::map<std::string, std::string> content_of(const Store& store, const StoredRun& run) {
+  std::map<std::string, std::string> content = results_of(run.outcome, run.metrics);
+  content["detail"] = run.detail;
+  content["manifest"] = manifest_content(store.manifest(run));
   for (const ModuleCost& cost : run.costs) content["module " + cost.module] = "timed per " + cost.per;
   for (const auto& [kind, blob] : run.blobs) {
     const bool is_volatile =
@@ -211,8 +203,8 @@ void append_differences(std::vector<std::string>& lines, const std::string& subj
   }
 }
 
-std::string label_of(const StoredRun& run) {
-  return fmt::format("run {} ({} {})", run.key, run.identity.sequence, run.identity.variant);
+std::string label_of(const RunIdentity& identity) {
+  return fmt::format("run {} ({} {})", run_key(identity), identity.sequence, identity.variant);
 }
 
 std::map<std::string, std::string> plans_of(const Store& store) {
@@ -227,6 +219,29 @@ std::map<std::string, std::string> plans_of(const Store& store) {
 
 }  // namespace
 
+RunMerger::RunMerger(const fs::path& into) : writer_(into) {
+  for (const StoredRun& run : Store(into).runs()) present_[run.key] = results_of(run.outcome, run.metrics);
+}
+
+void RunMerger::add(const RunIdentity& identity, const RunOutcome& outcome) {
+  const bool is_added = add_run(writer_, identity, outcome);
+  ++(is_added ? report_.added : report_.present);
+  Results results = results_of(outcome.outcome, outcome.metrics);
+  const auto [known, is_new] = present_.try_emplace(run_key(identity), std::move(results));
+  if (!is_new && !is_added && known->second != results_of(outcome.outcome, outcome.metrics))
+    report_.contradicting.push_back(label_of(identity));
+}
+
+MergeReport merge_stores(const fs::path& from, const fs::path& into) {
+  if (fs::exists(into) && fs::equivalent(from, into)) throw InputError(into.string(), "is the same store");
+  const Store source(from);
+  RunMerger merger(into);
+  for (const StoredRun& run : source.runs()) merger.add(run.identity, outcome_from(source, run));
+  for (const StoredPlan& plan : source.plans()) merger.writer().record_plan(plan);
+  write_acceptances(into, source.acceptances());
+  return merger.report();
+}
+
 std::vector<std::string> store_differences(const fs::path& first, const fs::path& second) {
   const Store store_a(first);
   const Store store_b(second);
@@ -236,13 +251,15 @@ std::vector<std::string> store_differences(const fs::path& first, const fs::path
   for (const StoredRun& run : store_a.runs()) {
     const auto other = remaining.find(run.key);
     if (other == remaining.end()) {
-      lines.push_back(label_of(run) + ": only in " + first.string());
+      lines.push_back(label_of(run.identity) + ": only in " + first.string());
       continue;
     }
-    append_differences(lines, label_of(run), content_of(store_a, run), content_of(store_b, other->second));
+    append_differences(lines, label_of(run.identity), content_of(store_a, run),
+                       content_of(store_b, other->second));
     remaining.erase(other);
   }
-  for (const auto& [key, run] : remaining) lines.push_back(label_of(run) + ": only in " + second.string());
+  for (const auto& [key, run] : remaining)
+    lines.push_back(label_of(run.identity) + ": only in " + second.string());
   append_differences(lines, "store", plans_of(store_a), plans_of(store_b));
   return lines;
 }

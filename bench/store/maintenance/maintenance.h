@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,31 @@ GarbageReport collect_garbage(const std::filesystem::path& file);
 struct MergeReport {
   std::size_t added = 0;
   std::size_t present = 0;  ///< already in the target store
+  /// Those of them that ended there with another outcome or other errors: "run KEY (SEQUENCE VARIANT)".
+  std::vector<std::string> contradicting;
 };
 
-/// Adds the completed runs of `from` to `into`, with their plans, manifests, files and acceptances. `into` is
-/// created if it does not exist; runs that it already contains are not changed.
+/// Adds completed runs to a store, which is created if it does not exist. Runs that it already contains are
+/// not changed, but compared, apart from what depends on the machine.
+class RunMerger {
+ public:
+  explicit RunMerger(const std::filesystem::path& into);
+
+  void add(const RunIdentity& identity, const RunOutcome& outcome);
+
+  [[nodiscard]] StoreWriter& writer() { return writer_; }
+  [[nodiscard]] const MergeReport& report() const { return report_; }
+
+ private:
+  using Results = std::map<std::string, std::string>;  ///< text by name
+
+  StoreWriter writer_;
+  std::map<std::string, Results> present_;  ///< by key of the run
+  MergeReport report_;
+};
+
+/// Adds the completed runs of `from` to `into`, with their plans, manifests, files and acceptances, see
+/// RunMerger.
 /// @throws InputError if a file of `from` is missing or damaged; runs added before remain
 MergeReport merge_stores(const std::filesystem::path& from, const std::filesystem::path& into);
 

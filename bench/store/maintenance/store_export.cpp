@@ -208,23 +208,19 @@ MergeReport import_store(const std::string& text, const std::string& place, cons
     std::vector<std::pair<RunIdentity, RunOutcome>> runs;  // all are read before one is written
     for (const Json& run : json.at("runs"))
       runs.emplace_back(identity_of(run.at("identity")), checked_outcome(run, place));
-    StoreWriter writer(into);
-    MergeReport report;
-    for (const auto& [identity, outcome] : runs) {
-      const bool is_added = add_run(writer, identity, outcome);
-      ++(is_added ? report.added : report.present);
-    }
+    RunMerger merger(into);
+    for (const auto& [identity, outcome] : runs) merger.add(identity, outcome);
     for (const Json& plan : json.at("plans")) {
-      writer.record_plan({.name = plan.at("name"),
-                          .title = plan.at("title"),
-                          .text = plan.at("text"),
-                          .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
+      merger.writer().record_plan({.name = plan.at("name"),
+                                   .title = plan.at("title"),
+                                   .text = plan.at("text"),
+                                   .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
     }
     std::vector<Acceptance> acceptances;
     for (const Json& accepted : json.value("accepted", Json::array()))
       acceptances.push_back(acceptance_of(accepted));
     write_acceptances(into, acceptances);
-    return report;
+    return merger.report();
   });
 }
 

@@ -141,6 +141,24 @@ TEST(StoreMaintenance, ExportAndImportPreserveEverything) {
   EXPECT_EQ(imported.manifest(run), "{}");
 }
 
+TEST(StoreMaintenance, RunsThatArePresentWithOtherErrorsAreNamed) {
+  const TemporaryFolder folder;
+  const fs::path into = store_of(folder, "into.sqlite", {"a", "b"});
+  std::string text = export_store(into);
+  EXPECT_TRUE(import_store(text, "runs.json", into).contradicting.empty());
+  const std::size_t error = text.find("0.5");  // of the first run
+  ASSERT_NE(error, std::string::npos);
+  text.replace(error, 3, "0.7");
+  const MergeReport imported = import_store(text, "runs.json", into);
+  EXPECT_EQ(imported.present, 2u);
+  ASSERT_EQ(imported.contradicting.size(), 1u);
+  EXPECT_NE(imported.contradicting.front().find(run_key(identity_of("a"))), std::string::npos)
+      << imported.contradicting.front();
+  const fs::path other = folder.path() / "other.sqlite";
+  import_store(text, "runs.json", other);
+  EXPECT_EQ(merge_stores(other, into).contradicting, imported.contradicting);
+}
+
 TEST(StoreMaintenance, ExportAndImportPreserveEveryByteOfFiles) {
   const TemporaryFolder folder;
   const fs::path from = folder.path() / "from.sqlite";
