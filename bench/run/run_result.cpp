@@ -175,26 +175,25 @@ Measurements measurements_of(const RunResult& result) {
 namespace {
 
 /// What explains errors against the ground truth. The trajectory follows all conventions, so apart from the
-/// scale it is the ground truth that does not, unless a fault was injected.
+/// scale it is the ground truth that does not, unless a fault was injected. Stamps that match have one unit.
 std::vector<std::string> truth_warnings(const RunResult& result, bool has_faults) {
   using enum eval::Convention;
   std::vector<std::string> warnings;
+  const std::size_t pairs = result.score.ate ? result.score.ate->pairs : 0;
   for (const eval::ConventionFinding& finding :
        eval::find_convention_violations(result.gt, result.run.trajectory)) {
     const bool is_scale = finding.convention == kScale;
     if (is_scale) warnings.push_back("trajectory: " + finding.message);
     if (is_scale || has_faults || finding.convention == kSwappedArguments ||
-        finding.convention == kRepeatedPoses)
+        finding.convention == kRepeatedPoses || (finding.convention == kStampUnit && pairs > 0))
       continue;
     warnings.push_back("ground truth: compared with it, " + finding.message +
                        "; `stillpoint diagnose` tests the ground truth");
   }
-  const std::size_t pairs = result.score.ate ? result.score.ate->pairs : 0;
   if (warnings.empty() && !result.gt.poses.empty() && 2 * pairs < result.score.poses) {
-    warnings.push_back(
-        fmt::format("ground truth: has a pose within 20 ms for {} of {} poses only; the errors "
-                    "are those of these",
-                    pairs, result.score.poses));
+    warnings.push_back(fmt::format(
+        "ground truth: has a pose within {} s for {} of {} poses only; the errors are those of these",
+        eval::ScoreOptions{}.max_difference_s, pairs, result.score.poses));
   }
   return warnings;
 }

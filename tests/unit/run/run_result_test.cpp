@@ -82,7 +82,18 @@ TEST(RunResult, WarnsOfGroundTruthThatIsLateOrSparse) {
   std::erase_if(sparse.ground_truth.trajectory.poses, [&](const StampedPose& pose) {
     return pose.t.ns % 1'000'000'000 != info.frame_times.front().ns % 1'000'000'000;
   });
-  expect_warning(sparse, "ground truth: has a pose within 20 ms for");
+  expect_warning(sparse, "ground truth: has a pose within 0.02 s for 6 of 60 poses");
+}
+
+TEST(RunResult, WholeSecondsThatMatchTheGroundTruthAreNoOtherUnit) {
+  datasets::SequenceInfo info = straight_sequence();
+  for (int i = 0; i < kFrames; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    info.frame_times[index] = from_seconds(i);
+    info.ground_truth.trajectory.poses[index].t = from_seconds(i);
+  }
+  const RunResult result = score_run(info, perfect_run(info, kFrames));
+  EXPECT_TRUE(result.warnings.empty()) << result.warnings.front();
 }
 
 TEST(RunResult, OfAnInterruptedRunIsMarkedAndScoredOnProcessedFrames) {
