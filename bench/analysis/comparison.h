@@ -55,7 +55,8 @@ struct Comparison {
 /// with it the error by several percent. A change is therefore tested against replicates with perturbed input
 /// (bench/model/stored_run.h) or other seeds; repetitions with equal trajectories count once. Where the
 /// replicates of a sequence are too few for the test, the pairs of all sequences of the variant are pooled,
-/// and the changes of the single sequences are reported as inconclusive.
+/// or where these are too few, too, those of all variants; the changes of the single sequences are reported
+/// as inconclusive.
 ///
 /// Times and memory are tested per variant over all sequences. Accuracy is not tested if all trajectories are
 /// bit-equal.

@@ -226,10 +226,9 @@ RunMerger::RunMerger(const fs::path& into) : writer_(into) {
 void RunMerger::add(const RunIdentity& identity, const RunOutcome& outcome) {
   const bool is_added = add_run(writer_, identity, outcome);
   ++(is_added ? report_.added : report_.present);
-  Results results = results_of(outcome.outcome, outcome.metrics);
-  const auto [known, is_new] = present_.try_emplace(run_key(identity), std::move(results));
-  if (!is_new && !is_added && known->second != results_of(outcome.outcome, outcome.metrics))
-    report_.contradicting.push_back(label_of(identity));
+  const Results results = results_of(outcome.outcome, outcome.metrics);
+  const auto [known, is_new] = present_.try_emplace(run_key(identity), results);
+  if (!is_new && !is_added && known->second != results) report_.contradicting.push_back(label_of(identity));
 }
 
 MergeReport merge_stores(const fs::path& from, const fs::path& into) {
