@@ -81,9 +81,10 @@ std::string input_key(const RunIdentity& identity) {
 }
 
 std::string fingerprint(const StoredRun& run) {
+  // Equal trajectories on other data, e.g. of a system that does not move, are other results.
+  std::string text = run.identity.sequence_id + " ";
   const auto trajectory = run.blobs.find("trajectory");
-  if (trajectory != run.blobs.end()) return trajectory->second;
-  std::string text;
+  if (trajectory != run.blobs.end()) return text + trajectory->second;
   bool is_specific = false;  // different runs may have the same rates
   for (const Metric& metric : run.metrics) {
     const MetricDescriptor* descriptor = gated_metric(metric.name);

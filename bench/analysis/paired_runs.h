@@ -37,7 +37,8 @@ struct PairedRuns {
 /// and with any repetition and perturbation.
 [[nodiscard]] std::string input_key(const RunIdentity& identity);
 
-/// Equal for runs with the same result: name of the trajectory file, or the metrics of accuracy without one.
+/// Equal for runs with the same result on the same data: checksum of the data, and the name of the trajectory
+/// file, or the metrics of accuracy without one.
 /// Repetitions of a deterministic program have one fingerprint, and are not replicates. Empty if the run has
 /// neither, or only rates, by which different runs may agree: then it is no copy of another run.
 [[nodiscard]] std::string fingerprint(const StoredRun& run);

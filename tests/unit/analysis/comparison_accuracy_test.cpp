@@ -165,6 +165,24 @@ TEST(ComparisonAccuracy, AChangeOf20PercentOverSeedsIsDetected) {
   EXPECT_EQ(comparison.result(), ChangeClass::kWorse);
 }
 
+TEST(ComparisonAccuracy, EqualTrajectoriesOnOtherDataAreNoCopies) {
+  Sides sides;
+  for (int seed = 1; seed <= 6; ++seed) {
+    for (const bool is_base : {true, false}) {
+      // Base does not move, so its error is the extent of the scene.
+      const double error = 0.1 * seed;
+      StoredRun run = compared_run("a", is_base ? error : 2.0 * error, 1, is_base ? "base" : "head");
+      run.identity.seed = seed;
+      run.identity.sequence_id += std::to_string(seed);
+      if (is_base) run.blobs["trajectory"] = "at rest";
+      (is_base ? sides.base : sides.head).push_back(std::move(run));
+    }
+  }
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  EXPECT_EQ(change_on(comparison, "vo on a").change.count, 6u);
+  EXPECT_EQ(comparison.result(), ChangeClass::kWorse);  // p = 2^-5
+}
+
 TEST(ComparisonAccuracy, DoesNotMaskARegressionOnOneSequence) {
   Sides sides = replicates(8, 0.5);
   const Sides worse = replicates(8, 1.2, "b");
