@@ -133,27 +133,35 @@ std::vector<std::string> notes_on_copies(const PairedRuns& runs) {
                   copies, count, kPerturbationKey)};
 }
 
+/// What to do about too few runs: perturbations of one input are replicates, seeds are pairs.
+std::string advice_of(const MetricChange& change, CompareSource source) {
+  if (source == CompareSource::kPrograms) return fmt::format("run with --pairs {}", change.needed);
+  const std::string perturbations =
+      change.test == ChangeTest::kReplicates ? fmt::format("{} perturbations or ", change.needed) : "";
+  return fmt::format(
+      "store {}{} seeds of each sequence, or repeat each run: bit-equal repetitions make a change exact",
+      perturbations, change.needed_seeds);
+}
+
 /// One sentence for each number of pairs that is too small for the inconclusive changes.
 std::vector<std::string> notes_on_pairs(const Comparison& comparison, CompareSource source) {
-  std::map<std::tuple<ChangeTest, std::size_t, double, std::size_t>, std::size_t> counts;
+  std::map<std::tuple<ChangeTest, std::size_t, double, std::string>, std::size_t> counts;
   for (const MetricChange& change : comparison.changes) {
     if (change.needed > 0 && change.result == ChangeClass::kInconclusive)
-      ++counts[{change.test, change.change.count, change.smallest_p, change.needed}];
+      ++counts[{change.test, change.change.count, change.smallest_p, advice_of(change, source)}];
   }
+  const TestFamily& family = comparison.family;
+  const std::string tests = family.tests > 1 ? fmt::format("{} tests at once require", family.tests)
+                                             : "a significant change requires";
   std::vector<std::string> notes;
   for (const auto& [too_few, metrics] : counts) {
-    const auto& [test, count, smallest_p, needed] = too_few;
+    const auto& [test, count, smallest_p, advice] = too_few;
     const char* noun = test == ChangeTest::kReplicates ? "replicate" : "pair";
-    notes.push_back(fmt::format(
-        "{} {}{} cannot go below p = {:.2g}, but {} tests at once require p <= {:.2g}: {} change{} remain{} "
-        "inconclusive; {}",
-        count, noun, count == 1 ? "" : "s", smallest_p, comparison.family.tests, comparison.family.level,
-        metrics, metrics == 1 ? "" : "s", metrics == 1 ? "s" : "",
-        source == CompareSource::kPrograms
-            ? fmt::format("run with --pairs {}", needed)
-            : fmt::format("store {} seeds or perturbations of each sequence, or repeat each run: bit-equal "
-                          "repetitions make a change exact",
-                          needed)));
+    notes.push_back(
+        fmt::format("{} {}{} cannot go below p = {:.2g}, but {} p <= {:.2g}: {} change{} remain{} "
+                    "inconclusive; {}",
+                    count, noun, count == 1 ? "" : "s", smallest_p, tests, family.level, metrics,
+                    metrics == 1 ? "" : "s", metrics == 1 ? "s" : "", advice));
   }
   return notes;
 }

@@ -172,6 +172,8 @@ class CostTable {
     if (std::isfinite(pair.base) && std::isfinite(pair.changed)) series.pairs.push_back(pair);
     inputs_[key].insert(input_of(identity));
     series.inputs = inputs_[key].size();
+    sequences_[key].insert(identity.sequence);
+    series.sequences = sequences_[key].size();
   }
 
   /// Runs that were not made to measure a cost are left out if others were.
@@ -188,6 +190,7 @@ class CostTable {
   using Key = std::tuple<std::string, std::string, bool>;
   std::map<Key, MetricSeries> table_;
   std::map<Key, std::set<Input>> inputs_;
+  std::map<Key, std::set<std::string>> sequences_;
 };
 
 /// Variants whose times were measured on one machine, base and head in turn.
@@ -280,11 +283,13 @@ MetricSeries pooled(const std::vector<const MetricSeries*>& parts) {
   series.test = ChangeTest::kPairs;
   series.decides = true;
   series.inputs = 0;
+  series.sequences = 0;
   series.pairs.clear();
   series.base.clear();
   series.head.clear();
   for (const MetricSeries* part : parts) {
     series.inputs += part->inputs;
+    series.sequences += part->sequences;
     series.pairs.insert(series.pairs.end(), part->pairs.begin(), part->pairs.end());
   }
   return series;
@@ -311,9 +316,10 @@ using Inputs = std::set<std::string>;
 }  // namespace
 
 TestFamily test_family(std::vector<TestedSeries> tests) {
-  std::erase_if(tests, [](const TestedSeries& test) { return test.smallest_p > kSignificance; });
+  const std::size_t with_too_few =
+      std::erase_if(tests, [](const TestedSeries& test) { return test.smallest_p > kSignificance; });
   std::ranges::sort(tests, {}, &TestedSeries::p_value);
-  TestFamily family{.tests = tests.size()};
+  TestFamily family{.tests = tests.size(), .with_too_few = with_too_few};
   if (tests.empty()) return family;
   const double first_level = kSignificance / static_cast<double>(tests.size());
   family.level = first_level;
@@ -373,6 +379,10 @@ double smallest_p_of(const MetricSeries& series) {
 std::size_t pairs_for(const MetricSeries& series, double level) {
   if (series.test == ChangeTest::kReplicates) return replicates_for(level);
   return (eval::smallest_count(level) + series.inputs - 1) / series.inputs;
+}
+
+std::size_t seeds_for(const MetricSeries& series, double level) {
+  return (eval::smallest_count(level) + series.sequences - 1) / series.sequences;
 }
 
 namespace {
@@ -507,9 +517,14 @@ std::optional<MetricChange> change_of(const MetricSeries& series, const TestFami
   change.decides = series.decides;
   if (is_tested(series)) {
     change.smallest_p = smallest_p_of(series);
-    const double level = kSignificance / static_cast<double>(std::max<std::size_t>(1, family.tests));
+    // More runs also make tests of those that are left out.
+    const std::size_t tests = family.tests + family.with_too_few;
+    const double level = kSignificance / static_cast<double>(std::max<std::size_t>(1, tests));
     const std::size_t needed = pairs_for(series, level);
-    if (change.smallest_p > change.level && needed * series.inputs > tested->count) change.needed = needed;
+    if (change.smallest_p > change.level && needed * series.inputs > tested->count) {
+      change.needed = needed;
+      change.needed_seeds = seeds_for(series, level);
+    }
   }
   change.result = classify(change, *series.descriptor);
   return change;

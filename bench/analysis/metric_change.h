@@ -53,6 +53,7 @@ struct MetricSeries {
   const MetricDescriptor* descriptor = nullptr;  ///< with a gate
   ChangeTest test = ChangeTest::kPairs;
   std::size_t inputs = 1;         ///< number of different data and seeds
+  std::size_t sequences = 1;      ///< each counted once per variant
   std::vector<eval::Pair> pairs;  ///< one per pair of runs
   std::vector<double> base;       ///< `kReplicates`: one value per replicate
   std::vector<double> head;
@@ -81,6 +82,7 @@ inline constexpr double kSignificance = 0.05;
 /// The tests of one comparison.
 struct TestFamily {
   std::size_t tests = 0;         ///< m
+  std::size_t with_too_few = 0;  ///< tests that were left out, as their number of pairs is too small
   double level = kSignificance;  ///< largest p-value of a significant change
 };
 
@@ -113,6 +115,9 @@ struct TestedSeries {
 /// Smallest number of pairs per input with which a series can reach a p-value of `level`.
 [[nodiscard]] std::size_t pairs_for(const MetricSeries& series, double level);
 
+/// Smallest number of seeds of each sequence with which a series can reach a p-value of `level`.
+[[nodiscard]] std::size_t seeds_for(const MetricSeries& series, double level);
+
 /// From the best to the worst result of a comparison.
 enum class ChangeClass { kSame, kBetter, kInconclusive, kMissing, kWorse, kError };
 
@@ -137,10 +142,11 @@ struct MetricChange {
   std::optional<eval::Interval> difference_interval{};  ///< at 95 %; nullopt if there are too few values
   /// Largest absolute change of a pair that differs by at least the floor, relative unless `is_absolute`.
   double largest = 0.0;
-  bool changed = false;     ///< by at least margin and floor of the metric, significant or not
-  double smallest_p = 1.0;  ///< that the number of pairs can reach
-  std::size_t needed = 0;   ///< pairs per input that a class requires; 0 if there are enough
-  bool decides = true;      ///< false: reported only, or too few pairs: another change pools all sequences
+  bool changed = false;          ///< by at least margin and floor of the metric, significant or not
+  double smallest_p = 1.0;       ///< that the number of pairs can reach
+  std::size_t needed = 0;        ///< pairs per input that a class requires; 0 if there are enough
+  std::size_t needed_seeds = 0;  ///< seeds of each sequence instead; 0 if there are enough
+  bool decides = true;  ///< false: reported only, or too few pairs: another change pools all sequences
   ChangeClass result = ChangeClass::kSame;
 };
 

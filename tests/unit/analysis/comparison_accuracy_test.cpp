@@ -55,10 +55,13 @@ TEST(ComparisonAccuracy, AChangeOfOneReplicateIsNotWorseHoweverLarge) {
   EXPECT_TRUE(change.changed);
   EXPECT_NEAR(change.change.median, 1.0, 1e-12);
   EXPECT_FALSE(change.change.interval.has_value());
-  // One test: 4 replicates per side reach 2 / 70 = 0.029.
+  // One test: 4 replicates per side reach 2 / 70 = 0.029, 6 pairs 2^-5 = 0.031.
   EXPECT_EQ(change.needed, 4u);
+  EXPECT_EQ(change.needed_seeds, 6u);
   EXPECT_TRUE(has_note(comparison, "1 replicate cannot go below p = 1, ")) << comparison.notes.front();
-  EXPECT_TRUE(has_note(comparison, "store 4 seeds or perturbations")) << comparison.notes.front();
+  EXPECT_TRUE(has_note(comparison, "but a significant change requires p <= 0.05"))
+      << comparison.notes.front();
+  EXPECT_TRUE(has_note(comparison, "store 4 perturbations or 6 seeds of each")) << comparison.notes.front();
   const Comparison executed = compare_runs(sides.base, sides.head, CompareSource::kPrograms);
   EXPECT_TRUE(has_note(executed, "run with --pairs 4")) << executed.notes.front();
   EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
@@ -163,6 +166,38 @@ TEST(ComparisonAccuracy, AChangeOf20PercentOverSeedsIsDetected) {
   EXPECT_EQ(change_on(comparison, "vo on a").test, ChangeTest::kPairs);
   EXPECT_EQ(change_on(comparison, "vo on a").change.count, 6u);
   EXPECT_EQ(comparison.result(), ChangeClass::kWorse);
+}
+
+/// `count` seeds of each sequence, on other data, with 1.5 times the error at head.
+Sides seeds_of(const std::vector<std::string>& sequences, int count) {
+  Sides sides;
+  for (const std::string& sequence : sequences) {
+    for (int seed = 1; seed <= count; ++seed) {
+      for (const bool is_base : {true, false}) {
+        const double error = 0.01 * seed * (is_base ? 1.0 : 1.5);
+        StoredRun run = compared_run(sequence, error, 1, is_base ? "base" : "head");
+        run.identity.seed = seed;
+        run.identity.sequence_id += std::to_string(seed);
+        (is_base ? sides.base : sides.head).push_back(std::move(run));
+      }
+    }
+  }
+  return sides;
+}
+
+TEST(ComparisonAccuracy, TheNumberOfSeedsThatIsProposedIsEnough) {
+  for (const int seeds : {3, 4, 5}) {
+    const Sides sides = seeds_of({"a"}, seeds);
+    const Comparison comparison = compare_runs(sides.base, sides.head);
+    EXPECT_TRUE(has_note(comparison, "store 6 seeds of each sequence")) << comparison.notes.front();
+  }
+  const Sides enough = seeds_of({"a"}, 6);
+  EXPECT_EQ(compare_runs(enough.base, enough.head).result(), ChangeClass::kWorse);
+  // The pool of two sequences with two seeds each has four pairs, and six with three.
+  const Sides pooled = seeds_of({"a", "b"}, 2);
+  EXPECT_EQ(change_on(compare_runs(pooled.base, pooled.head), "vo on all sequences").needed_seeds, 3u);
+  const Sides enough_in_pool = seeds_of({"a", "b"}, 3);
+  EXPECT_EQ(compare_runs(enough_in_pool.base, enough_in_pool.head).result(), ChangeClass::kWorse);
 }
 
 TEST(ComparisonAccuracy, EqualTrajectoriesOnOtherDataAreNoCopies) {
