@@ -90,7 +90,9 @@ TEST(StoreMaintenance, MergeImportAndExportKeepTheTimesOfRuns) {
   merge_stores(from, merged);
   const fs::path imported = store_of(folder, "imported.sqlite", {"new"});
   import_store(export_store(from), "runs.json", imported);
-  for (const fs::path& file : {from, merged, imported}) {
+  const fs::path from_numbers = store_of(folder, "from_numbers.sqlite", {"new"});
+  import_store(export_store(from, ExportExtent::kNumbers), "numbers.json", from_numbers);
+  for (const fs::path& file : {from, merged, imported, from_numbers}) {
     const StoredRun run = Store(file).runs().front();  // the oldest, although it was added last
     EXPECT_EQ(run.started, "2020-01-01T00:00:00Z") << file;
     EXPECT_EQ(run.ended, "2020-01-01T00:00:09Z") << file;
