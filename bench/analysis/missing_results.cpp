@@ -49,7 +49,7 @@ namespace {
 Names names_of(const StoredRun& run) {
   Names names;
   for (const Metric& metric : run.metrics) {
-    if (must_exist(metric.name) && std::isfinite(metric.value) && !is_impossible(metric))
+    if (must_exist(metric.name) && std::isfinite(metric.value) && impossibility(metric).empty())
       names.insert("metric " + metric.name);
   }
   for (const ModuleCost& cost : run.costs) {

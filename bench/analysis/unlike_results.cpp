@@ -180,7 +180,8 @@ bool is_interleaved(const std::vector<RunPair>& pairs) {
 std::optional<eval::Pair> comparable_values(const RunPair& pair, std::string_view metric) {
   const auto [base, head] = same_measure(pair, metric);
   if (base == nullptr || !std::isfinite(base->value) || !std::isfinite(head->value)) return std::nullopt;
-  if (is_impossible(*base) || is_impossible(*head) || unlike_frames(pair)) return std::nullopt;
+  if (!impossibility(*base).empty() || !impossibility(*head).empty() || unlike_frames(pair))
+    return std::nullopt;
   return eval::Pair{base->value, head->value};
 }
 

@@ -140,7 +140,7 @@ inline constexpr MetricDescriptor kLoopMetrics[] = {
      .description = "Fraction of the revisits with an accepted loop that is not false",
      .direction = MetricDirection::kLargerIsBetter,
      .source = MetricSource::kLoop,
-     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 0.02},
+     .gate = MetricGate{.margin = 0.05, .floor = 0.02, .is_fraction = true},
      .value = revisit_value<&eval::RevisitScore::recall>},
 };
 

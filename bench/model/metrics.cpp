@@ -50,8 +50,12 @@ const MetricDescriptor* gated_metric(std::string_view id) {
   return metric != nullptr && metric->gate ? metric : nullptr;
 }
 
-bool is_impossible(const Metric& metric) {
-  return metric.value < 0.0 && gated_metric(without_protocol(metric.name)) != nullptr;
+std::string_view impossibility(const Metric& metric) {
+  constexpr double kMaxFraction = 1.0 + 1e-9;  // a quotient of two sums of times may be rounded up
+  const MetricDescriptor* descriptor = gated_metric(without_protocol(metric.name));
+  if (descriptor == nullptr) return "";
+  if (metric.value < 0.0) return "negative";
+  return descriptor->gate->is_fraction && metric.value > kMaxFraction ? "above 1" : "";
 }
 
 std::string_view without_protocol(std::string_view name) {

@@ -160,6 +160,7 @@ struct MetricGate {
   double floor = 0.0;           ///< absolute, in the unit of the metric
   bool repeatable = true;       ///< the same program gives the same value in each run
   bool absent_is_good = false;  ///< no value: there was nothing to measure; else it is a loss
+  bool is_fraction = false;     ///< from 0 to 1
 };
 
 struct MetricProtocol {
@@ -197,8 +198,9 @@ struct MetricDescriptor {
 /// As `find_metric`; also null if the metric is not compared.
 [[nodiscard]] const MetricDescriptor* gated_metric(std::string_view id);
 
-/// Whether a stored value is impossible for its metric: values that are compared are not negative.
-[[nodiscard]] bool is_impossible(const Metric& metric);
+/// Why a stored value is impossible for its metric: "negative", which values that are compared are not, or
+/// "above 1" of a fraction; empty if it is possible.
+[[nodiscard]] std::string_view impossibility(const Metric& metric);
 
 /// The id in the name of a stored metric, "PROTOCOL/ID" or "ID".
 [[nodiscard]] std::string_view without_protocol(std::string_view name);

@@ -37,18 +37,17 @@ std::vector<std::string> faults_of(Statement check, const std::string& what) {
   return faults;
 }
 
-/// One text per metric with an infinite or impossible value; 9e999 is the infinity of SQL.
+/// One text per metric with an infinite or impossible value.
 std::vector<std::string> faulty_metrics(const Database& database) {
   std::vector<std::string> faults;
   Statement rows = database.prepare(
       "SELECT run.key, name, value FROM metric JOIN run ON run.id = metric.run "
-      "WHERE value < 0 OR value = 9e999");
+      "WHERE value < 0 OR value > 1");
   while (rows.step()) {
     const Metric metric{.name = rows.text(1), .value = rows.real(2)};
-    const bool is_infinite = std::isinf(metric.value);
-    if (!is_infinite && !is_impossible(metric)) continue;
-    faults.push_back(fmt::format("run {}: metric \"{}\" is {}", rows.text(0), metric.name,
-                                 is_infinite ? "infinite" : "negative"));
+    const std::string_view fault = std::isinf(metric.value) ? "infinite" : impossibility(metric);
+    if (!fault.empty())
+      faults.push_back(fmt::format("run {}: metric \"{}\" is {}", rows.text(0), metric.name, fault));
   }
   return faults;
 }

@@ -175,9 +175,9 @@ RunOutcome outcome_of_json(const Json& json) {
 RunOutcome checked_outcome(const Json& run, const std::string& place) {
   RunOutcome outcome = outcome_of_json(run);
   for (const Metric& metric : outcome.metrics) {
-    if (is_impossible(metric))
-      throw InputError(place, fmt::format("run {}: metric {} is {:g}; it cannot be negative",
-                                          run.at("key").get<std::string>(), metric.name, metric.value));
+    if (const std::string_view why = impossibility(metric); !why.empty())
+      throw InputError(place, fmt::format("run {}: metric {} is {:g}; it cannot be {}",
+                                          run.at("key").get<std::string>(), metric.name, metric.value, why));
   }
   return outcome;
 }

@@ -57,6 +57,16 @@ TEST(Metrics, OfProtocolsShareTheDescription) {
   EXPECT_NE(gated_metric(without_protocol("strict:se3/ate_rmse_m")), nullptr);
 }
 
+TEST(Metrics, ErrorsAreNotNegativeAndFractionsAtMost1) {
+  EXPECT_EQ(impossibility({.name = "ate_rmse_m", .value = -0.1}), "negative");
+  EXPECT_EQ(impossibility({.name = "ate_rmse_m", .value = 1.7}), "");
+  for (const char* name : {"coverage", "correct_rate", "false_confidence", "strict:se3/correct_rate"}) {
+    EXPECT_EQ(impossibility({.name = name, .value = 1.7}), "above 1") << name;
+    EXPECT_EQ(impossibility({.name = name, .value = 1.0 + 1e-15}), "") << name;  // rounded
+  }
+  EXPECT_EQ(impossibility({.name = "frames", .value = -1.0}), "");  // not compared
+}
+
 TEST(Metrics, ModulesHaveTooltipsAndUnknownNamesHaveNone) {
   for (std::size_t i = 0; i < kModuleCount; ++i)
     EXPECT_FALSE(tooltip_of(module_name(static_cast<Module>(i))).empty());
