@@ -76,6 +76,7 @@ using Subject =
 struct SubjectRuns {
   std::size_t succeeded = 0;
   std::vector<double> values;
+  std::vector<double> coverages;
   std::set<std::string> results;  ///< fingerprints
 };
 using SubjectTable = std::map<Subject, SubjectRuns>;
@@ -91,9 +92,29 @@ SubjectTable subjects_of(std::span<const StoredRun> runs, const std::string& var
     if (const std::optional<double> value = value_of(run, metric)) {
       subject.values.push_back(*value);
       subject.results.insert(fingerprint(run));
+      const std::optional<double> coverage = value_of(run, std::string(metric_id::kCoverage));
+      if (coverage) subject.coverages.push_back(*coverage);
     }
   }
   return table;
+}
+
+/// Coverages of a pair.
+struct CoveragePair {
+  double base = 1.0;
+  double changed = 1.0;
+  [[nodiscard]] double gap() const { return std::abs(base - changed); }
+};
+
+CoveragePair wider_gap(const CoveragePair& a, const CoveragePair& b) { return b.gap() > a.gap() ? b : a; }
+
+/// Of metrics that are small if most of the track is lost.
+std::string coverage_doubt(const CoveragePair& coverages, const std::string& metric) {
+  const MetricDescriptor* known = find_metric(without_protocol(metric));
+  const bool is_error = known != nullptr && known->source == MetricSource::kTrajectory &&
+                        known->direction == MetricDirection::kSmallerIsBetter;
+  if (!is_error || coverages.gap() <= kMaxCoverageGap) return "";
+  return fmt::format("coverage {:.2f}, base {:.2f}: not comparable", coverages.changed, coverages.base);
 }
 
 /// Pairs of one sequence.
@@ -113,10 +134,15 @@ class SequencePairs {
       ++copies;
     } else {
       pairs.push_back({*before, *after});
+      const std::optional<double> covered_before = eval::percentile(base.coverages, 0.5);
+      const std::optional<double> covered_after = eval::percentile(changed.coverages, 0.5);
+      if (covered_before && covered_after)
+        coverages = wider_gap(coverages, {*covered_before, *covered_after});
     }
   }
 
   std::vector<eval::Pair> pairs{};
+  CoveragePair coverages;  ///< of the pair in which they differ most
   std::size_t newly_failed = 0;
   std::size_t newly_without_value = 0;
   std::size_t copies = 0;
@@ -156,8 +182,10 @@ void add_estimates(AblationRow& row, const std::vector<std::vector<eval::Pair>>&
 
 /// @param names variant and sequence of the row
 AblationRow row_of(const AblationRow& names, const SubjectTable& base, const SubjectTable& changed,
-                   bool counts_once) {
+                   const std::string& metric) {
   AblationRow row = names;
+  const bool counts_once = is_deterministic(metric);
+  CoveragePair coverages;
   std::map<std::string, SequencePairs> sequences;
   for (const auto& [subject, runs] : base) {
     const std::string& sequence = std::get<0>(subject);
@@ -170,9 +198,11 @@ AblationRow row_of(const AblationRow& names, const SubjectTable& base, const Sub
     row.newly_failed += of_sequence.newly_failed;
     row.newly_without_value += of_sequence.newly_without_value;
     row.copies += of_sequence.copies;
+    coverages = wider_gap(coverages, of_sequence.coverages);
     if (!of_sequence.pairs.empty()) pairs.push_back(of_sequence.pairs);
   }
   add_estimates(row, pairs);
+  row.doubt = coverage_doubt(coverages, metric);
   return row;
 }
 
@@ -239,10 +269,9 @@ std::vector<AblationRow> ablation(std::span<const StoredRun> runs, const std::st
   for (const std::string& variant : variants) {
     if (variant == base) continue;
     const SubjectTable table = subjects_of(runs, variant, metric);
-    const bool counts_once = is_deterministic(metric);
-    rows.push_back(row_of({.variant = variant, .sequence = ""}, base_table, table, counts_once));
+    rows.push_back(row_of({.variant = variant, .sequence = ""}, base_table, table, metric));
     for (const std::string& sequence : names_in_order(runs, &RunIdentity::sequence)) {
-      rows.push_back(row_of({.variant = variant, .sequence = sequence}, base_table, table, counts_once));
+      rows.push_back(row_of({.variant = variant, .sequence = sequence}, base_table, table, metric));
     }
   }
   return rows;

@@ -55,6 +55,9 @@ struct AblationRow {
   std::size_t copies = 0;               ///< pairs that are left out as copies
   std::optional<eval::PairedDifference> difference;
   std::optional<eval::RelativeChange> change;  ///< nullopt also if a value of 0 changes: only a difference
+  /// "coverage 0.33, base 1.00: not comparable" of errors of poses, about the pair in which the coverages
+  /// differ most; empty if by at most `kMaxCoverageGap`.
+  std::string doubt;
 };
 
 /// @param runs that may be pooled, e.g. of one `RunGroup`

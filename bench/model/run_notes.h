@@ -14,6 +14,10 @@
 
 namespace stillpoint::bench {
 
+/// Errors over fractions of the frames that differ by more than this are not ranked: a run that lost most of
+/// its track has a small error over the rest.
+inline constexpr double kMaxCoverageGap = 0.2;
+
 /// Footnote about the run with the most frames without recorded boxes: "no recorded boxes in 12 of 240
 /// frames", and "in up to 12 of 240 frames" for several runs; empty if there is no such run. Failed runs are
 /// ignored.

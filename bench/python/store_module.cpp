@@ -239,7 +239,8 @@ void bind_run_statistics(py::module_& m) {
       .field("copies", &AblationRow::copies, "Pairs that do not count.")
       .field("difference", &AblationRow::difference, "eval.PairedDifference; None without pairs.")
       .field("change", &AblationRow::change,
-             "eval.RelativeChange; None without pairs, or if a value of 0 changes.");
+             "eval.RelativeChange; None without pairs, or if a value of 0 changes.")
+      .field("doubt", &AblationRow::doubt, "Why the errors are not comparable; empty without a reason.");
   m.def(
       "ablation",
       [](const Runs& runs, const std::string& base, const std::string& metric) {

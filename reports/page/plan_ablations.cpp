@@ -92,25 +92,32 @@ const char* direction_class(double change) {
   return change > 0.0 ? "worse" : "better";
 }
 
-/// The cell of a change from 0: a difference, not a ratio.
-std::string difference_cell(const eval::PairedDifference& difference, const std::string& lost) {
-  return fmt::format(
-      "<td class=\"{}{}\" style=\"--depth:54%\">{:+.4g}<span class=\"interval\">n = {}, from 0</span>{}</td>",
-      direction_class(difference.median), eval::is_significant(difference) ? "" : " insignificant",
-      difference.median, difference.count, lost);
+/// Hatched unless the change is significant; neither better nor worse if it is not comparable.
+std::string cell_class(const bench::AblationRow& row, double change, bool is_significant) {
+  if (!row.doubt.empty()) return "equal insignificant";
+  return std::string(direction_class(change)) + (is_significant ? "" : " insignificant");
 }
 
-/// Hatched unless the change is significant.
+/// The cell of a change from 0: a difference, not a ratio.
+std::string difference_cell(const bench::AblationRow& row, const std::string& lost) {
+  const eval::PairedDifference& difference = *row.difference;
+  return fmt::format(
+      "<td class=\"{}\" style=\"--depth:54%\">{:+.4g}<span class=\"interval\">n = {}, from 0</span>{}</td>",
+      cell_class(row, difference.median, eval::is_significant(difference)), difference.median,
+      difference.count, lost);
+}
+
 std::string cell_html(const bench::AblationRow& row) {
   std::string lost = row.newly_failed == 0 ? "" : fmt::format("<br>{} lost", row.newly_failed);
-  if (!row.change && row.difference) return difference_cell(*row.difference, lost);
+  if (!row.doubt.empty()) lost += "<br>" + row.doubt;
+  if (!row.change && row.difference) return difference_cell(row, lost);
   if (!row.change)
     return "<td class=\"empty\"><abbr tabindex=\"0\" title=\"no pair of successful runs\">n/a</abbr>" + lost +
            "</td>";
   const eval::RelativeChange& change = *row.change;
-  return fmt::format("<td class=\"{}{}\" style=\"--depth:{}%\">{}<span class=\"interval\">{}</span>{}</td>",
-                     direction_class(change.median), eval::is_significant(change) ? "" : " insignificant",
-                     color_depth(change.median), percent_text(change.median), interval_text(change), lost);
+  return fmt::format("<td class=\"{}\" style=\"--depth:{}%\">{}<span class=\"interval\">{}</span>{}</td>",
+                     cell_class(row, change.median, eval::is_significant(change)), color_depth(change.median),
+                     percent_text(change.median), interval_text(change), lost);
 }
 
 std::string caption_html(const PlanAblation& ablation, const bench::MetricDescriptor& metric) {
@@ -121,8 +128,9 @@ std::string caption_html(const PlanAblation& ablation, const bench::MetricDescri
   return fmt::format(
       "<caption>Change of {} relative to {}: Hodges-Lehmann estimate over n pairs of equal sequence and "
       "seed (in the column all over n sequences), and its exact 95 % interval (Wilcoxon signed-rank test); "
-      "hatched: not significant, because "
-      "the interval contains 0 or n is too small for one. {}</caption>\n",
+      "hatched: not significant, because the interval contains 0 or n is too small for one, or not "
+      "comparable "
+      "because a lost track leaves fewer frames. {}</caption>\n",
       metric.id, base, bench::tooltip(metric));
 }
 

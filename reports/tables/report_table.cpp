@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/run_notes.h"
+
 namespace stillpoint::report {
 
 std::string cell_state_name(CellState state) {
@@ -64,13 +66,12 @@ std::size_t footnote_number(const std::vector<std::string>& notes, const TableCe
 }
 
 void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better) {
-  constexpr double kMaxCoverageGap = 0.2;
   double coverage = 0.0;
   for (const TableCell* cell : cells) {
     if (cell->number) coverage = std::max(coverage, cell->coverage.value_or(0.0));
   }
   const auto covers_less = [&](const TableCell& cell) {
-    return cell.number && cell.coverage && *cell.coverage < coverage - kMaxCoverageGap;
+    return cell.number && cell.coverage && *cell.coverage < coverage - bench::kMaxCoverageGap;
   };
   for (TableCell* cell : cells) {
     if (!covers_less(*cell)) continue;

@@ -119,8 +119,9 @@ TEST_F(StatsCommand, TablesForProgramsHaveNumbers) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json table = nlohmann::json::parse(result.out);
   EXPECT_EQ(table.at("kind"), "stats_ablation");
-  EXPECT_EQ(table.at("schema"), 1);
+  EXPECT_EQ(table.at("schema"), 2);
   const nlohmann::json& row = table.at("rows").at(0);
+  EXPECT_EQ(row.at("doubt"), nullptr);
   EXPECT_EQ(row.at("build"), "newer");
   EXPECT_EQ(row.at("variant"), "wo");
   EXPECT_EQ(row.at("unit"), "m");

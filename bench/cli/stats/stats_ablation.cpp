@@ -85,6 +85,7 @@ std::vector<std::string> cells_of(const AblationRow& row, const std::string& bas
   } else {
     cells.insert(cells.end(), 4, "n/a");
   }
+  if (!row.doubt.empty()) cells.back() += "; " + row.doubt;
   return cells;
 }
 
@@ -108,7 +109,8 @@ std::vector<std::string> ablation_columns() {
           "relative_change",
           "relative_low",
           "relative_high",
-          "relative_p"};
+          "relative_p",
+          "doubt"};
 }
 
 /// Difference and interval in the unit of the metric; the relative change is head / base - 1.
@@ -135,6 +137,7 @@ report::DataRow values_of(const AblationRow& row, const std::string& base,
   } else {
     values.resize(values.size() + 5);
   }
+  add({report::data_value(row.doubt)});
   return values;
 }
 
@@ -199,7 +202,8 @@ int stats_ablation(const StatsArguments& arguments) {
                     .kind = "stats_ablation",
                     .columns = ablation_columns(),
                     .groups = {},
-                    .notes = {}};
+                    .notes = {},
+                    .version = 2};
   std::set<std::size_t> counts;
   std::size_t copies = 0;
   std::size_t without_value = 0;

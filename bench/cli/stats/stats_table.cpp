@@ -68,7 +68,8 @@ void print_for_readers(const StatsTable& table) {
 }
 
 report::DataTable data_table(const StatsTable& table) {
-  report::DataTable data{.kind = table.kind, .columns = {}, .rows = {}, .notes = table.notes};
+  report::DataTable data{
+      .kind = table.kind, .columns = {}, .rows = {}, .notes = table.notes, .version = table.version};
   for (const GroupColumn& column : kGroupColumns) data.columns.emplace_back(column.name);
   data.columns.insert(data.columns.end(), table.columns.begin(), table.columns.end());
   for (const GroupRows& group : table.groups) {

@@ -86,6 +86,7 @@ struct StatsTable {
   std::vector<std::string> columns;  ///< of `GroupRows::data`
   std::vector<GroupRows> groups;     ///< at least one
   std::vector<std::string> notes;
+  int version = 1;  ///< of the schema
 };
 
 /// Prints a table with the notes below it. For readers, build, machine and mode are columns where they differ

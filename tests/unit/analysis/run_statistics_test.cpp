@@ -95,6 +95,19 @@ TEST(Ablation, CountsPairsInWhichOnlyTheVariantFailed) {
   EXPECT_FALSE(rows[0].difference.has_value());
 }
 
+TEST(Ablation, ErrorsOverFewerFramesAreNotComparable) {
+  std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("wo", "a", 1, 0.4),
+                                 run_of("full", "b", 1, 1.0), run_of("wo", "b", 1, 0.9)};
+  for (StoredRun& run : runs) run.metrics.push_back({"coverage", "", "", 1.0});
+  runs[1].metrics.back().value = 0.33;
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].doubt, "coverage 0.33, base 1.00: not comparable");
+  EXPECT_EQ(rows[1].doubt, rows[0].doubt);
+  EXPECT_EQ(rows[2].doubt, "");
+  EXPECT_EQ(ablation(runs, "full", "coverage")[1].doubt, "");  // it is the difference itself
+}
+
 TEST(Ablation, AChangeFromZeroHasADifferenceButNoRatio) {
   std::vector<StoredRun> runs;
   for (int seed = 1; seed <= 6; ++seed) {

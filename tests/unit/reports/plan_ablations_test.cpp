@@ -14,6 +14,7 @@ struct VariantErrors {
   std::string variant;
   std::vector<double> by_seed;  ///< ATE [m]
   std::string system = "stillpoint";
+  double coverage = 1.0;
 };
 
 /// Stores one run per variant and seed, and a plan over them.
@@ -29,7 +30,8 @@ void add_plan(const std::filesystem::path& file, const std::string& name, const 
                                         .config_hash = variant.variant,
                                         .seed = static_cast<std::int64_t>(i) + 1};
       if (writer.acquire(identity) == bench::RunLease::kGranted)
-        writer.finish(identity, {.metrics = {{"ate_rmse_m", "compat:tum", "m", variant.by_seed[i]}}});
+        writer.finish(identity, {.metrics = {{"ate_rmse_m", "compat:tum", "m", variant.by_seed[i]},
+                                             {"coverage", "", "", variant.coverage}}});
       plan.run_keys.push_back(bench::run_key(identity));
     }
   }
@@ -123,6 +125,16 @@ TEST(HeatMap, AChangeThatEnoughPairsSupportIsNotHatched) {
   const std::string cell = cell_of(page_of(folder.path() / "s"), "b");
   EXPECT_NE(cell.find("class=\"worse\""), std::string::npos) << cell;
   EXPECT_NE(cell.find("n = 8, +100.0 to +100.0 %"), std::string::npos) << cell;
+}
+
+TEST(HeatMap, ASmallErrorOfALostTrackIsNotDrawnAsBetter) {
+  const TemporaryFolder folder;
+  add_plan(folder.path() / "s", "p", "ablation_base = \"a\"\n",
+           {{"a", {0.010, 0.011, 0.012, 0.013, 0.014, 0.015}},
+            {"b", {0.005, 0.006, 0.007, 0.008, 0.009, 0.010}, "stillpoint", 0.33}});
+  const std::string cell = cell_of(page_of(folder.path() / "s"), "b");
+  EXPECT_NE(cell.find("class=\"equal insignificant\""), std::string::npos) << cell;
+  EXPECT_NE(cell.find("coverage 0.33, base 1.00: not comparable"), std::string::npos) << cell;
 }
 
 TEST(HeatMap, NoChangeIsNeitherBetterNorWorse) {
