@@ -16,6 +16,7 @@
 #include "bench/config/settings.h"
 #include "bench/config/spelling.h"
 #include "bench/config/toml_source.h"
+#include "bench/model/stored_run.h"
 #include "bench/process/child_process.h"
 #include "bench/systems/module_times.h"
 #include "core/base/content_hash.h"
@@ -127,6 +128,17 @@ void require_source(const ExternalSystem& system, const Setting& setting) {
   if (source.git.find("://") != std::string::npos)
     throw InputError(setting.file, setting.line,
                      "\"source.git\" is an address; clone it, and state the folder of the clone");
+}
+
+/// The name is a key of stored runs and a cell of tables.
+void require_name(const ExternalSystem& system, const Setting& setting) {
+  if (setting.key != "name") return;
+  if (system.name == RunIdentity().system)
+    throw InputError(setting.file, setting.line,
+                     "\"name\" is \"" + system.name + "\", the odometry of this program; use another name");
+  if (std::ranges::any_of(system.name, [](unsigned char c) { return std::iscntrl(c) != 0; }))
+    throw InputError(setting.file, setting.line,
+                     "\"name\" contains a line break or another control character; remove it");
 }
 
 /// @param timing settings of the table [timing]
@@ -313,6 +325,7 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
   if (system.command.empty()) throw InputError(path, "has no command; add command = [\"program\", ...]");
   require_placeholders(system, own_settings);
   for (const Setting& setting : own_settings) {
+    require_name(system, setting);
     if (setting.key == "environment") require_environment(setting, system);
     require_calibration(setting, system);
     require_source(system, setting);

@@ -47,6 +47,8 @@ TEST(ExternalDescription, NamesTheLineOfAFault) {
                          {"s.toml:4: ", "clone it"});
   expect_bad_description("name = \"s\"\ncommand = [\"{binary}\"]", {"s.toml:2: ", "[source]"});
   expect_bad_description("command = [\"s\"]", {"s.toml: has no name"});
+  expect_bad_description("name = \"stillpoint\"\ncommand = [\"s\"]", {"s.toml:1: ", "use another name"});
+  expect_bad_description("command = [\"s\"]\nname = \"a\\nb\"", {"s.toml:2: ", "line break"});
   expect_bad_description("name = \"s\"", {"s.toml: has no command"});
 }
 
