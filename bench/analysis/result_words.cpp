@@ -55,7 +55,8 @@ constexpr ResultWord kWords[] = {
     {kHistory, "No open regressions.", "nothing is open; what the history can show follows"},
     {kStatus, "ok", "all frames were processed, and there are two poses or more"},
     {kStatus, "lost, failed",
-     "all frames were processed with fewer than two poses; \"failed\" in result.json and tables"},
+     "all frames were processed with fewer than two poses, or with none in the time of the frames; "
+     "\"failed\" in result.json and tables"},
     {kStatus, "interrupted", "stopped on request; only in result.json"},
     {kStatus, "crashed", "terminated by a signal, or exited with an error"},
     {kStatus, "timed_out", "terminated at the time limit of the plan"},

@@ -275,13 +275,25 @@ void apply_scale(SystemTrajectory& output, const datasets::SequenceInfo& info) {
   output.log += fmt::format("positions multiplied by {:.6g}{}\n", scale, kScaleFitted);
 }
 
+/// Why the poses of a trajectory tell no error; empty if they do.
+std::string pose_problem(const Trajectory& trajectory, const std::vector<Timestamp>& frames) {
+  const std::vector<StampedPose>& poses = trajectory.poses;
+  if (poses.size() < 2) return "has only one pose, which tells no error";
+  if (frames.empty() || (poses.back().t >= frames.front() && poses.front().t <= frames.back())) return "";
+  return fmt::format(
+      "has poses from {} to {} s, but the frames are from {} to {} s; write the stamps of the frames",
+      eval::format_stamp(poses.front().t), eval::format_stamp(poses.back().t),
+      eval::format_stamp(frames.front()), eval::format_stamp(frames.back()));
+}
+
 RunOutcome scored(const ExternalSystem& system, const RunRequest& request, const ProcessResult& process) {
   const std::unique_ptr<datasets::SensorStream> stream = played_sequence(request);
   const datasets::SequenceInfo& info = stream->info();
   SystemTrajectory output = read_output(system, request.work, info);
   RunOutcome result;
-  if (output.trajectory.poses.size() < 2) {
-    result = failed(Outcome::kLost, system.trajectory + " has only one pose, which tells no error");
+  const std::string problem = pose_problem(output.trajectory, info.frame_times);
+  if (!problem.empty()) {
+    result = failed(Outcome::kLost, system.trajectory + " " + problem);
     if (!output.log.empty()) result.attachments["log"] = output.log;
     return result;
   }

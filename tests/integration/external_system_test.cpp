@@ -124,6 +124,21 @@ TEST(ExternalSystem, WithOnePoseIsLost) {
   EXPECT_NE(result.out.find("| lost "), std::string::npos) << result.out;
 }
 
+TEST(ExternalSystem, WithPosesAtOtherTimesIsLost) {
+  const TemporaryFolder folder;
+  const std::string script = folder
+                                 .write("late.sh",
+                                        "#!/bin/sh\nfor t in 900.0 900.1 900.2; do echo $t 0 0 0 0 0 0 1; "
+                                        "done >\"$1/trajectory.tum\"\n")
+                                 .string();
+  folder.write("late.toml",
+               "name = \"late\"\nlayout = \"tum\"\ncommand = [\"sh\", \"" + script + "\", \"{out}\"]\n");
+  EXPECT_EQ(bench_system(folder, "late.toml").exit_code, 1);
+  EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kLost);
+  EXPECT_NE(run_of(folder).detail.find("trajectory.tum has poses from 900"), std::string::npos)
+      << run_of(folder).detail;
+}
+
 TEST(ExternalSystem, IsRejectedWithoutACommand) {
   const TemporaryFolder folder;
   const auto system = folder.write("s.toml", "name = \"s\"\n");
