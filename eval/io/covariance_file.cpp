@@ -78,6 +78,10 @@ bool is_zero(const StampedCovariance& covariance) {
   return covariance.position.isZero(0.0) && covariance.rotation.isZero(0.0);
 }
 
+InputError no_covariance(const TextRow& row) {
+  return row.error("is no covariance: it has a negative variance, or is not finite");
+}
+
 /// Whether the row names columns instead of containing numbers.
 bool is_header(const TextRow& row) { return row.fields.empty() || !parse_number(row.fields.front()); }
 
@@ -105,6 +109,21 @@ std::optional<CovarianceTable> find_covariances(std::string_view text, const std
   return table;
 }
 
+std::optional<InputError> fault_in_covariances(std::string_view text, const std::string& name) {
+  std::optional<InputError> fault;
+  std::size_t others = 0;
+  std::size_t covariances = 0;
+  RowReader rows(text, name);
+  while (const std::optional<TextRow> row = rows.next()) {
+    if (covariances + others == 0 && is_header(*row)) continue;
+    const bool is_covariance =
+        row->fields.size() > kColumnsOfPose && covariance_of_row(*row, kColumnsOfPose).has_value();
+    ++(is_covariance ? covariances : others);
+    if (!is_covariance && !fault) fault = no_covariance(*row);
+  }
+  return covariances > others ? fault : std::nullopt;
+}
+
 CovarianceTable parse_covariances(std::string_view text, const std::string& name) {
   CovarianceTable table;
   RowReader rows(text, name);
@@ -114,7 +133,7 @@ CovarianceTable parse_covariances(std::string_view text, const std::string& name
       throw row->error("has " + std::to_string(row->fields.size()) +
                        " fields; expected a stamp and 6, 12, 21 or 36 numbers of a covariance");
     const std::optional<StampedCovariance> covariance = covariance_of_row(*row, 1);
-    if (!covariance) throw row->error("is no covariance: it has a negative variance, or is not finite");
+    if (!covariance) throw no_covariance(*row);
     table.rows.push_back(*covariance);
     table.columns = row->fields.size() - 1;
   }

@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include "core/base/error.h"
 #include "core/base/timestamp.h"
 #include "core/types/trajectory.h"
 
@@ -45,6 +46,12 @@ struct CovarianceTable {
 /// @return nullopt if there is another number of columns, or if they are no covariances: of each row, they
 /// are positive semidefinite or all 0, and not all rows are 0
 [[nodiscard]] std::optional<CovarianceTable> find_covariances(std::string_view text, const std::string& name);
+
+/// Why columns after those of the pose are not used that are covariances in most rows.
+/// @param text of a trajectory in which `find_covariances` finds none
+/// @param name of the file, for messages
+/// @return the error of the first row that has none, with its line; nullopt if the columns are something else
+[[nodiscard]] std::optional<InputError> fault_in_covariances(std::string_view text, const std::string& name);
 
 /// A file of rows `t` and covariance.
 /// @throws InputError with file and line for another number of columns, or what is no covariance

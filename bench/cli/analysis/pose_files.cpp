@@ -98,9 +98,12 @@ std::optional<eval::CovarianceTable> covariances_of(const PoseFilePaths& paths, 
     return table;
   }
   if (!has_further_columns(file.path)) return std::nullopt;
-  std::optional<eval::CovarianceTable> table =
-      eval::find_covariances(eval::read_text_file(file.path), file.path);
-  if (table) {
+  const std::string text = eval::read_text_file(file.path);
+  std::optional<eval::CovarianceTable> table = eval::find_covariances(text, file.path);
+  if (!table) {
+    if (const auto fault = eval::fault_in_covariances(text, file.path))
+      spdlog::warn("{}; the covariances of the file were not evaluated", fault->what());
+  } else {
     spdlog::info("{}: the {} columns after the pose are covariances ({})", file.path, table->columns,
                  table->columns == 12 ? "rotation, position" : "position, rotation");
   }

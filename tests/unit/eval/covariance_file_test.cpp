@@ -67,5 +67,17 @@ TEST(CovarianceFile, OtherColumnsAreNoCovariances) {
   expect("# nothing\n", "contains no covariances");
 }
 
+TEST(CovarianceFile, ARowWithoutCovarianceAmongOthersIsNamed) {
+  const std::string good = kPoseRow + "1 2 3 4 5 6\n";
+  const std::string text = "# t pose variances\n" + good + good + kPoseRow + "1 2 3 4 5 nan\n" + good;
+  EXPECT_FALSE(find_covariances(text, "a"));
+  const std::optional<InputError> fault = fault_in_covariances(text, "a");
+  ASSERT_TRUE(fault);
+  EXPECT_NE(std::string(fault->what()).find("a:4: is no covariance"), std::string::npos) << fault->what();
+  // Velocities are negative in many rows.
+  const std::string velocity = kPoseRow + "1 2 3 4 5 -6\n";
+  EXPECT_FALSE(fault_in_covariances(good + velocity + velocity, "a"));
+}
+
 }  // namespace
 }  // namespace stillpoint::eval
