@@ -69,7 +69,7 @@ done
 output eval_cloud 0 eval cloud "$work/cloud0.ply" "$work/cloud0.01.ply" --json
 
 baseline="$here/../../bench/baselines/quick_instructions.json"
-sed 's/"value": 1/"value": 2/' "$baseline" >"$work/head.json"
+sed 's/"value": 1\([0-9]\)/"value": 2\1/' "$baseline" >"$work/head.json" # counts, not fractions
 quiet 1 compare "$baseline" "$work/head.json" --out "$work/comparison"
 cp "$work/comparison/compare.json" "$work/compare/worse.json"
 output compare 1 compare "$baseline" "$work/head.json" --json
