@@ -30,6 +30,6 @@ add_dependencies(stillpoint_minimal stillpoint_git_state)
 
 add_executable(stillpoint ${program_sources})
 stillpoint_precompile(stillpoint bench)
-stillpoint_group(stillpoint)
+stillpoint_group(stillpoint ACROSS_FOLDERS)
 target_link_libraries(stillpoint PRIVATE stillpoint_minimal stillpoint_warnings CLI11::CLI11 fmt::fmt
                       nlohmann_json::nlohmann_json spdlog::spdlog)

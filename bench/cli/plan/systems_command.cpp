@@ -34,14 +34,14 @@ int list_systems(const std::vector<std::string>& files, bool json) {
   return kExitOk;
 }
 
-struct CheckArguments {
+struct SystemCheckArguments {
   std::string system;
   std::string out;
   double time_limit_s = CheckOptions{}.time_limit_s;
   int memory_limit_mb = CheckOptions{}.memory_limit_mb;
 };
 
-int check(const CheckArguments& arguments) {
+int check_system(const SystemCheckArguments& arguments) {
   const ExternalSystem system = load_external_system(arguments.system);
   const fs::path folder = arguments.out.empty() ? fs::path("build/bench/systems") / folder_name(system.name)
                                                 : fs::path(arguments.out);
@@ -66,7 +66,7 @@ int create(const std::string& name, const std::string& out) {
 }
 
 Command check_system_command() {
-  const auto arguments = std::make_shared<CheckArguments>();
+  const auto arguments = std::make_shared<SystemCheckArguments>();
   return {.name = "check",
           .summary = "Run a system for 3 s; name in one line what is wrong with it, and the remedy",
           .example = "systems check my_slam.toml",
@@ -83,7 +83,7 @@ Command check_system_command() {
                        "Limit in megabytes for it and its children [4096]",
                        &arguments->memory_limit_mb,
                        {1, 10000000}}},
-          .action = [arguments] { return check(*arguments); }};
+          .action = [arguments] { return check_system(*arguments); }};
 }
 
 }  // namespace

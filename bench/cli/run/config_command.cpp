@@ -24,7 +24,7 @@ int show(const ConfigRequest& request) {
   return kExitOk;
 }
 
-int list(bool json) {
+int list_configs(bool json) {
   if (json) {
     report::DataTable table{.kind = "config_list", .columns = {"name"}, .rows = {}, .notes = {}};
     for (const std::string& name : embedded_names(TomlKind::kConfig)) table.rows.push_back({name});
@@ -111,11 +111,11 @@ Command config_command() {
                   {"--variant", "Overlays joined by +", &request->variant},
                   {"--set", "Override a config key: key=value; may be repeated", &request->settings}},
       .action = [request] { return show(*request); }};
-  Command list_configs{.name = "list",
-                       .summary = "Print the names of the embedded configs and overlays",
-                       .example = "config list",
-                       .options = {{"--json", report::kJsonHelp, json.get()}},
-                       .action = [json] { return list(*json); }};
+  Command listing{.name = "list",
+                  .summary = "Print the names of the embedded configs and overlays",
+                  .example = "config list",
+                  .options = {{"--json", report::kJsonHelp, json.get()}},
+                  .action = [json] { return list_configs(*json); }};
   Command print_reference{.name = "reference",
                           .summary =
                               "Explain all keys: meaning, unit, range, default, section of the paper "
@@ -126,7 +126,7 @@ Command config_command() {
   return {.name = "config",
           .summary = "Show, compare and explain configs and their keys",
           .example = "config show",
-          .subcommands = {std::move(show_config), std::move(list_configs), diff_command(),
+          .subcommands = {std::move(show_config), std::move(listing), diff_command(),
                           std::move(print_reference)}};
 }
 

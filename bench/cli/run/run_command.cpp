@@ -356,7 +356,7 @@ int save_map_and_dumps(const RunArguments& arguments, const RunResult& result, R
 }
 
 /// Executes each configured run, and writes its files, then its dumps. @return exit code
-int run(const std::shared_ptr<const RunArguments>& shared) {
+int run_configs(const std::shared_ptr<const RunArguments>& shared) {
   const RunArguments& arguments = *shared;
   require_known_dumps(arguments.dumps);
   install_interrupt_handlers();
@@ -452,7 +452,7 @@ Command run_command() {
           .summary = "Run the odometry on one sequence; write trajectory, scores and manifest",
           .example = "run walking_xyz --variant wo_circular_mask --start 5 --out /tmp/run",
           .options = run_options(arguments),
-          .action = std::bind_front(run, arguments)};
+          .action = std::bind_front(run_configs, arguments)};
 }
 
 }  // namespace stillpoint::bench
