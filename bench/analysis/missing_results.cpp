@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/analysis/unlike_results.h"
 #include "bench/model/metrics.h"
 #include "eval/statistics/rank_tests.h"
 
@@ -72,10 +73,20 @@ struct LossTable {
   }
 };
 
+/// Poses of most of the frames that the other side locates: an error over the rest is small if the track is
+/// lost early, and so few runs show no significant change of their coverages.
+void add_poses(const RunPair& pair, LossTable& table) {
+  const std::optional<eval::Pair> coverage = comparable_values(pair, metric_id::kCoverage);
+  if (!coverage) return;
+  const auto [base, head] = *coverage;
+  table.add(pair.base->identity, "half of the poses", 2.0 * base >= head, 2.0 * head >= base);
+}
+
 LossTable lost_names(const PairedRuns& runs) {
   LossTable table;
   for (const RunPair& pair : runs.pairs) {
     if (!both_succeeded(pair)) continue;
+    add_poses(pair, table);
     const Names base = names_of(*pair.base);
     const Names head = names_of(*pair.head);
     Names all = base;

@@ -28,7 +28,8 @@ namespace stillpoint::bench {
 
 /// Something that base has and head lacks.
 struct MissingResult {
-  std::string what;      ///< "variant", "sequence", "runs", "metric ate_rmse_m" or "module window_solve"
+  /// "variant", "sequence", "runs", "half of the poses", "metric ate_rmse_m" or "module window_solve".
+  std::string what;
   std::string subject;   ///< variant, "variant on sequence", or sequence
   std::size_t base = 0;  ///< runs of base that have it
   std::size_t head = 0;  ///< runs of head that have it, among the counterparts of these
@@ -41,10 +42,10 @@ struct MissingResult {
 /// Whether a stored metric or module must have a value if an earlier run has one.
 [[nodiscard]] bool must_exist(const std::string& name);
 
-/// Variants and sequences without any run of head first, then those with few runs of head, then metrics and
-/// modules of pairs that succeeded on both sides. Metrics of the machine (`MetricSource::kMachine`,
-/// `kDevice`), and those whose absence is good
-/// (`MetricGate::absent_is_good`) are not listed.
+/// Variants and sequences without any run of head first, then those with few runs of head, then poses,
+/// metrics and modules of pairs that succeeded on both sides: poses are missing if head locates less than
+/// half of the frames that base does. Metrics of the machine (`MetricSource::kMachine`, `kDevice`), and those
+/// whose absence is good (`MetricGate::absent_is_good`) are not listed.
 [[nodiscard]] std::vector<MissingResult> missing_results(const PairedRuns& runs);
 
 /// Whether runs fail more often at head than at base: kWorse if all runs of a variant on a sequence fail that

@@ -198,5 +198,24 @@ TEST(MissingResults, LessThanHalfOfTheRunsOfASequenceIsInconclusive) {
   EXPECT_TRUE(result_with(5).missing.empty());
 }
 
+TEST(MissingResults, HalfOfThePosesOfOneSequenceIsMissingAlsoBesideManyOthers) {
+  std::vector<StoredRun> base;
+  for (int i = 0; i < 14; ++i) {
+    base.push_back(compared_run("s" + std::to_string(i), 0.01, 1));
+    base.back().metrics.push_back({"coverage", "", "", 0.98});
+  }
+  std::vector<StoredRun> head = base;
+  for (StoredRun& run : head) run.identity.build = "head";
+  head[3].metrics.back().value = 0.2;
+  const Comparison lost = compare_runs(base, head);
+  ASSERT_EQ(lost.missing.size(), 1u);
+  EXPECT_EQ(lost.missing.front().what, "half of the poses");
+  EXPECT_EQ(lost.missing.front().subject, "vo on s3");
+  EXPECT_EQ(lost.result(), ChangeClass::kMissing);
+  EXPECT_TRUE(compare_runs(head, base).missing.empty());  // gained
+  head[3].metrics.back().value = 0.5;
+  EXPECT_TRUE(compare_runs(base, head).missing.empty());
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
