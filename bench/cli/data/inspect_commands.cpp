@@ -20,6 +20,8 @@
 namespace stillpoint::bench {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct CheckArguments {
   std::string folder;
   std::string format;
@@ -30,7 +32,6 @@ struct CheckArguments {
 
 /// The schema is data_check.
 std::string report_json(const datasets::CheckReport& report) {
-  using Json = nlohmann::ordered_json;
   Json json = {{"schema", 1},
                {"sequence", report::clean_line(report.name)},
                {"format", report.format},

@@ -15,6 +15,8 @@
 namespace stillpoint::bench {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 /// Plans are multiplied until they have this many runs per simulated worker.
 constexpr std::size_t kMaxRunsPerWorker = 64;
 
@@ -110,7 +112,6 @@ std::string estimate_text(const PlanEstimate& estimate) {
 }
 
 std::string estimate_json(const PlanEstimate& estimate) {
-  using Json = nlohmann::ordered_json;
   Json tasks = Json::array();
   for (const TaskEstimate& task : estimate.tasks)
     tasks.push_back({{"tasks", task.tasks},
