@@ -102,23 +102,26 @@ std::vector<TimeSpan> lost_spans(const Trajectory& est, const TimeSpan& whole, d
 std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSpan& whole) {
   const double duration_s = seconds_between(whole.begin, whole.end);
   if (duration_s <= 0.0) return std::nullopt;
-  double lost_s = 0.0;
-  for (const TimeSpan& span : lost) lost_s += seconds_between(span.begin, span.end);
-  return 1.0 - lost_s / duration_s;
+  __int128 lost_ns = 0;  // rounded seconds may add up to more than the duration
+  for (const TimeSpan& span : lost) lost_ns += static_cast<__int128>(span.end.ns) - span.begin.ns;
+  return 1.0 - static_cast<double>(lost_ns) * 1e-9 / duration_s;
 }
 
 double correct_seconds(MatchView matches, const AteErrors& errors, Timestamp end,
                        const CorrectRateOptions& options) {
   STILLPOINT_CHECK(errors.translation_m.size() == matches.size() &&
                    errors.rotation_deg.size() == matches.size());
-  double seconds = 0.0;
+  constexpr double kLongestHold_s = 9e9;  // fits in 64 bits as nanoseconds
+  const __int128 max_hold_ns = from_seconds(std::min(options.max_hold_s, kLongestHold_s)).ns;
+  __int128 correct_ns = 0;  // rounded seconds may add up to more than the duration
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const bool correct = errors.translation_m[i] <= options.max_translation_m &&
                          errors.rotation_deg[i] <= options.max_rotation_deg;
     const Timestamp until = i + 1 < matches.size() ? matches.time(i + 1) : end;
-    if (correct) seconds += std::clamp(seconds_between(matches.time(i), until), 0.0, options.max_hold_s);
+    const __int128 until_next_ns = static_cast<__int128>(until.ns) - matches.time(i).ns;
+    if (correct) correct_ns += std::clamp<__int128>(until_next_ns, 0, max_hold_ns);
   }
-  return seconds;
+  return static_cast<double>(correct_ns) * 1e-9;
 }
 
 namespace {

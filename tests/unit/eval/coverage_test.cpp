@@ -71,6 +71,23 @@ TEST(CorrectRate, IsNotAvailableIfTheGroundTruthIsTooSparseToTell) {
   EXPECT_EQ(correct_rate(gt, curved_path(20, 30, 0.1)), 0.0);  // after its end, as if there were no pose
 }
 
+TEST(CorrectRate, IsExactlyOneForACorrectPoseAtAllTimes) {
+  for (const double rate_hz : {10.0, 15.0, 30.0, 60.0, 200.0}) {
+    const Trajectory gt = curved_path(0, 60, 1.0 / rate_hz);
+    EXPECT_EQ(correct_rate(gt, gt), 1.0) << rate_hz << " Hz";  // a sum of rounded intervals was above 1
+  }
+}
+
+TEST(TimeCoverage, IsExactlyZeroIfTheWholeTimeIsLost) {
+  const TimeSpan whole{{}, from_seconds(100.0)};
+  for (int i = 1; i < 1000;
+       ++i) {  // lost in two parts, whose rounded lengths may add up to more than the whole
+    const Timestamp between = from_seconds(0.1 * i + 1e-9 * i * i);
+    EXPECT_EQ(time_coverage(std::vector<TimeSpan>{{whole.begin, between}, {between, whole.end}}, whole), 0.0)
+        << i;
+  }
+}
+
 TEST(CorrectRate, ExcludesPosesBeyondTheThreshold) {
   const Trajectory gt = curved_path(0, 10, 0.1);
   Trajectory est = gt;
