@@ -43,7 +43,8 @@ struct Comparison {
 };
 
 /// Ranks runs by their ATE over the common support. Failed runs rank last and do not restrict the common
-/// support, so that a run that lost track early cannot rank first. Runs with equal errors keep their order.
+/// support, so that a run that lost track early cannot rank first. Runs with equal errors keep their order;
+/// tables give them one rank.
 [[nodiscard]] Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs,
                                       const CompareOptions& options = {});
 

@@ -63,14 +63,14 @@ std::string failure_sentence(const bench::StoredRun& run) {
   return run.detail.empty() ? text + "." : text + ", " + run.detail + ".";
 }
 
-/// Label with the smallest median error on a sequence, among those of comparable coverage.
-struct BestLabel {
-  std::string label;                ///< empty if fewer than two labels have an error
+/// Labels with the smallest median error on a sequence, among those of comparable coverage.
+struct BestLabels {
+  std::vector<std::string> labels;  ///< several with equal errors; empty if fewer than two labels have one
   std::vector<std::size_t> counts;  ///< number of runs behind each compared median
 };
 
-BestLabel best_on(std::span<const bench::StoredRun> runs, const std::vector<std::string>& labels,
-                  const std::string& sequence) {
+BestLabels best_on(std::span<const bench::StoredRun> runs, const std::vector<std::string>& labels,
+                   const std::string& sequence) {
   std::vector<TableCell> cells;
   cells.reserve(labels.size());
   for (const std::string& label : labels)
@@ -79,13 +79,13 @@ BestLabel best_on(std::span<const bench::StoredRun> runs, const std::vector<std:
   compared.reserve(cells.size());
   for (TableCell& cell : cells) compared.push_back(&cell);
   mark_best(compared, false);
-  BestLabel best;
+  BestLabels best;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!cells[i].number) continue;
-    if (cells[i].is_best && best.label.empty()) best.label = labels[i];
+    if (cells[i].is_best) best.labels.push_back(labels[i]);
     best.counts.push_back(cells[i].count);
   }
-  return best.counts.size() < 2 ? BestLabel{} : best;
+  return best.counts.size() < 2 ? BestLabels{} : best;
 }
 
 std::string change_text(const bench::MetricChange& change) {
@@ -139,10 +139,10 @@ std::string best_sentence(std::span<const bench::StoredRun> runs) {
   std::vector<std::size_t> counts;
   std::size_t compared = 0;
   for (const std::string& sequence : sequences_of(runs)) {
-    const BestLabel best = best_on(runs, labels, sequence);
-    if (best.label.empty()) continue;
+    const BestLabels best = best_on(runs, labels, sequence);
+    if (best.labels.empty()) continue;
     ++compared;
-    ++wins[best.label];
+    for (const std::string& label : best.labels) ++wins[label];
     counts.insert(counts.end(), best.counts.begin(), best.counts.end());
   }
   if (compared == 0) return "";

@@ -126,15 +126,28 @@ std::string covariance_table(const std::vector<EvaluatedRun>& runs, TableStyle s
   return format_table(rows, style);
 }
 
+namespace {
+
+/// Runs with equal errors share the smallest of their ranks ("1, 1, 3").
+std::string rank_cell(const eval::Comparison& comparison, std::size_t index) {
+  const eval::ComparedRun& run = comparison.ranking[index];
+  if (run.failed) return "failed";
+  if (!run.common_ate_rmse_m) return "n/a";
+  const auto first =
+      std::ranges::find(comparison.ranking, run.common_ate_rmse_m, &eval::ComparedRun::common_ate_rmse_m);
+  return std::to_string(first - comparison.ranking.begin() + 1);
+}
+
+}  // namespace
+
 std::string comparison_table(const eval::Comparison& comparison, TableStyle style) {
   TableRows rows{{"rank", "estimate", "coverage", "ATE on common poses [m]", "T.RPE [m/s]", "R.RPE [deg/s]",
                   "RPE pairs", "ATE on all own poses [m]"}};
   FewPairs few(style);
-  int rank = 0;
-  for (const eval::ComparedRun& run : comparison.ranking) {
-    ++rank;
-    rows.push_back({run.failed ? "failed" : std::to_string(rank), run.name, cell(run.coverage, 4),
-                    cell(run.common_ate_rmse_m, 6), few.marked(run.common_rpe_m, run.common_rpe_pairs),
+  for (std::size_t i = 0; i < comparison.ranking.size(); ++i) {
+    const eval::ComparedRun& run = comparison.ranking[i];
+    rows.push_back({rank_cell(comparison, i), run.name, cell(run.coverage, 4), cell(run.common_ate_rmse_m, 6),
+                    few.marked(run.common_rpe_m, run.common_rpe_pairs),
                     few.marked(run.common_rpe_deg, run.common_rpe_pairs),
                     std::to_string(run.common_rpe_pairs), cell(run.own_ate_rmse_m, 6)});
   }

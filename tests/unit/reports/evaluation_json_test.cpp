@@ -39,5 +39,20 @@ TEST(EvaluationTable, ShowsNotAvailableWithoutData) {
   EXPECT_NE(csv.find("lost,compat:tum,0,n/a,n/a,n/a,n/a,n/a,n/a,0,1 s,n/a\n"), std::string::npos) << csv;
 }
 
+TEST(ComparisonTable, EqualErrorsShareARank) {
+  eval::Comparison comparison;
+  const auto add = [&comparison](const std::string& name, std::optional<double> ate_m) {
+    comparison.ranking.push_back({.name = name, .coverage = 1.0, .common_ate_rmse_m = ate_m});
+  };
+  add("a", 0.01);
+  add("b", 0.01);
+  add("c", 0.02);
+  add("d", std::nullopt);  // too few common poses
+  comparison.ranking.push_back({.name = "e", .failed = true});
+  const std::string csv = comparison_table(comparison, TableStyle::kCsv);
+  for (const char* row : {"\n1,a,", "\n1,b,", "\n3,c,", "\nn/a,d,", "\nfailed,e,"})
+    EXPECT_NE(csv.find(row), std::string::npos) << csv;
+}
+
 }  // namespace
 }  // namespace stillpoint::report

@@ -366,6 +366,20 @@ TEST(Summary, NamesFailedRunsAndTheBestVariant) {
             "b has the smallest median ATE on 1 of 1 sequences (n = 1; not a statement of significance).");
 }
 
+TEST(Summary, VariantsWithEqualErrorsAreBestTogether) {
+  bench::StoredRun a;
+  a.identity = {.variant = "a", .sequence = "s"};
+  a.metrics = {{"ate_rmse_m", "", "m", 1.0}};
+  bench::StoredRun b = a;
+  b.identity.variant = "b";
+  bench::StoredRun c = a;
+  c.identity.variant = "c";
+  c.metrics.front().value = 2.0;
+  EXPECT_TRUE(
+      best_sentence(std::vector{a, b, c}).starts_with("a, b each have the smallest median ATE on 1 of 1"))
+      << best_sentence(std::vector{a, b, c});
+}
+
 TEST(Summary, AnErrorOverFewPosesIsNotTheSmallest) {
   bench::StoredRun whole;
   whole.identity = {.variant = "a", .sequence = "s"};
