@@ -34,7 +34,7 @@ Eigen::Vector3d vector_at(const eval::TextRow& row, const VectorColumns& columns
 
 /// Where the values of a row are.
 struct SampleLayout {
-  std::size_t time = 0;
+  eval::TimeColumns time;
   VectorColumns gyro{1, 2, 3};
   VectorColumns accel{4, 5, 6};
   eval::TimeUnit unit = eval::TimeUnit::kSeconds;
@@ -66,7 +66,7 @@ void require_unit(const NamedText& source, const eval::TableHeader& header, eval
 /// @throws InputError if a header that is no comment does not name the columns
 SampleLayout imu_layout(const NamedText& source, eval::TimeUnit unit) {
   const eval::TableHeader header = eval::find_header(source.text);
-  const std::optional<std::size_t> time = eval::time_column(header);
+  const std::optional<eval::TimeColumns> time = eval::time_columns(header);
   const std::vector<std::size_t> gyro = eval::columns_of(header, eval::Quantity::kAngularVelocity);
   const std::vector<std::size_t> accel = eval::columns_of(header, eval::Quantity::kAcceleration);
   SampleLayout layout{.unit = unit};
@@ -116,7 +116,7 @@ std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, eval::Ti
   return read_samples<ImuSample>(
       {text, name}, faults, [&layout](const eval::TextRow& row) -> std::optional<ImuSample> {
         if (row.line == layout.header_line) return std::nullopt;
-        return ImuSample{.t = row.time(layout.time, layout.unit),
+        return ImuSample{.t = eval::stamp_of(row, layout.time, layout.unit),
                          .gyro_b = vector_at(row, layout.gyro, kGyroscopeRange),
                          .accel_b = vector_at(row, layout.accel, kAccelerometerRange)};
       });

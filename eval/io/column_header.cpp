@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -11,6 +13,7 @@ namespace stillpoint::eval {
 namespace {
 
 constexpr std::string_view kAxes = "xyzw";
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
@@ -120,8 +123,8 @@ bool is_quantity(std::string_view rest, Quantity quantity) {
 }
 
 bool names_samples(const TableHeader& header) {
-  return time_column(header) && (!columns_of(header, Quantity::kPosition).empty() ||
-                                 !columns_of(header, Quantity::kAngularVelocity).empty());
+  return time_columns(header) && (!columns_of(header, Quantity::kPosition).empty() ||
+                                  !columns_of(header, Quantity::kAngularVelocity).empty());
 }
 
 }  // namespace
@@ -147,30 +150,96 @@ TableHeader find_header(std::string_view text) {
   return header;
 }
 
-std::optional<std::size_t> time_column(const TableHeader& header) {
-  constexpr std::array<std::string_view, 5> kNanoseconds{"nsec", "nsecs", "nanosec", "nanosecs",
-                                                         "nanoseconds"};
+namespace {
+
+/// A name without the word for seconds, or for parts of a second, that it ends with.
+struct TimeName {
+  std::string_view stem;
+  std::int64_t unit_ns = 0;
+};
+
+std::optional<TimeName> time_name(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::int64_t>, 13> kEndings{{{"nanoseconds", 1},
+                                                                                {"nanosecs", 1},
+                                                                                {"nanosec", 1},
+                                                                                {"nsecs", 1},
+                                                                                {"nsec", 1},
+                                                                                {"microseconds", 1000},
+                                                                                {"microsecs", 1000},
+                                                                                {"microsec", 1000},
+                                                                                {"usecs", 1000},
+                                                                                {"usec", 1000},
+                                                                                {"seconds", kSecond_ns},
+                                                                                {"secs", kSecond_ns},
+                                                                                {"sec", kSecond_ns}}};
+  for (const auto& [ending, unit_ns] : kEndings) {
+    if (name.ends_with(ending)) return TimeName{name.substr(0, name.size() - ending.size()), unit_ns};
+  }
+  return std::nullopt;
+}
+
+/// Two columns of equal names but for the unit, of which one is of seconds.
+/// @param require_header whether the names contain "header"
+std::optional<TimeColumns> split_time_columns(const TableHeader& header, bool require_header) {
+  for (std::size_t i = 0; i < header.columns.size(); ++i) {
+    const std::string& name = header.columns[i].name;
+    const std::optional<TimeName> seconds = time_name(name);
+    if (!seconds || (!is_time(name) && seconds->stem != "tv_") || seconds->unit_ns != kSecond_ns) continue;
+    if (require_header && !contains(seconds->stem, "header")) continue;
+    for (std::size_t k = 0; k < header.columns.size(); ++k) {
+      const std::optional<TimeName> rest = time_name(header.columns[k].name);
+      if (rest && rest->unit_ns < kSecond_ns && rest->stem == seconds->stem)
+        return TimeColumns{.stamp = i, .rest = k, .rest_unit_ns = rest->unit_ns};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<TimeColumns> time_columns(const TableHeader& header) {
+  for (const bool require_header : {true, false}) {
+    if (const auto split = split_time_columns(header, require_header)) return split;
+  }
   std::optional<std::size_t> first;
   std::optional<std::size_t> of_header;
   bool has_seconds = false;
-  bool has_fraction = false;
+  bool has_rest = false;
   for (std::size_t i = 0; i < header.columns.size(); ++i) {
     const std::string& name = header.columns[i].name;
-    const bool is_fraction = std::any_of(kNanoseconds.begin(), kNanoseconds.end(),
-                                         [&](std::string_view ending) { return name.ends_with(ending); });
-    if (!is_fraction && !is_time(name)) continue;
-    (is_fraction ? has_fraction : has_seconds) = true;
+    const std::optional<TimeName> time = time_name(name);
+    const bool is_rest = time && time->unit_ns == 1;
+    if (!is_rest && !is_time(name)) continue;
+    (is_rest ? has_rest : has_seconds) = true;
     if (!first) first = i;
     if (!of_header && contains(name, "header")) of_header = i;
   }
-  if (has_seconds && has_fraction) return std::nullopt;
-  return of_header ? of_header : first;
+  if (!first || (has_seconds && has_rest)) return std::nullopt;
+  return TimeColumns{.stamp = of_header.value_or(*first), .rest = std::nullopt};
+}
+
+Timestamp stamp_of(const TextRow& row, const TimeColumns& columns, TimeUnit unit) {
+  if (!columns.rest) return row.time(columns.stamp, unit);
+  const Timestamp seconds = row.time(columns.stamp, TimeUnit::kSeconds);
+  if (seconds.ns % kSecond_ns != 0)
+    throw row.error("\"" + std::string(row.text(columns.stamp)) +
+                    "\" is no whole number of seconds, although the header names a column of the rest");
+  if (seconds.ns > std::numeric_limits<std::int64_t>::max() - kSecond_ns)
+    throw row.error("stamp \"" + std::string(row.text(columns.stamp)) + "\" exceeds 292 years");
+  const std::string found(row.text(*columns.rest));
+  const std::optional<Timestamp> rest = parse_nanoseconds(found);  // an integer of either unit
+  const std::int64_t most = kSecond_ns / columns.rest_unit_ns - 1;
+  if (!rest || rest->ns < 0 || rest->ns > most)
+    throw row.error("\"" + found + "\" is no integer from 0 to " + std::to_string(most) +
+                    ", the rest of a stamp after its whole seconds");
+  return {seconds.ns + rest->ns * columns.rest_unit_ns};
 }
 
 std::optional<TimeUnit> time_unit(const TableHeader& header, std::string_view file) {
-  const std::optional<std::size_t> column = time_column(header);
-  if (!column) return std::nullopt;
-  const auto& [name, unit] = header.columns[*column];
+  const std::optional<TimeColumns> columns = time_columns(header);
+  if (!columns) return std::nullopt;
+  if (columns->rest) return TimeUnit::kSeconds;
+  const auto& [name, unit] = header.columns[columns->stamp];
   const std::string_view word =
       unit.empty() ? std::string_view(name).substr(name.find_last_of("_.-/ ") + 1) : std::string_view(unit);
   const auto is = [word](const std::string& prefix, std::string_view letters) {

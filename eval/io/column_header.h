@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,13 +36,27 @@ struct TableHeader {
 /// Vectors that the columns of a table may have.
 enum class Quantity { kPosition, kQuaternion, kAngularVelocity, kAcceleration };
 
-/// Index of the column of time stamps: that of the message header (`field.header.stamp`) rather than that of
-/// the reception (`%time` of rostopic), else the first; nullopt without one, or if seconds and nanoseconds
-/// have a column each.
-[[nodiscard]] std::optional<std::size_t> time_column(const TableHeader& header);
+/// Where the time stamps of a table are: in one column, or in one of whole seconds and one of the rest
+/// ("header.stamp.secs", "header.stamp.nsecs"; "tv_sec", "tv_usec").
+struct TimeColumns {
+  std::size_t stamp = 0;            ///< or the whole seconds
+  std::optional<std::size_t> rest;  ///< nanoseconds or microseconds since the whole second
+  std::int64_t rest_unit_ns = 1;
+};
+
+/// The columns of time stamps: those of the message header (`field.header.stamp`) rather than those of the
+/// reception (`%time` of rostopic), else two of equal names but for the unit, else the first.
+/// @return nullopt without one, or if it is not clear how columns of seconds and nanoseconds are related
+[[nodiscard]] std::optional<TimeColumns> time_columns(const TableHeader& header);
+
+/// The stamp of a row.
+/// @param unit of a stamp in one column
+/// @throws InputError with file and line as `TextRow::time`; if the seconds are not whole, or the rest is a
+/// second or more
+[[nodiscard]] Timestamp stamp_of(const TextRow& row, const TimeColumns& columns, TimeUnit unit);
 
 /// Unit of the column of time stamps: in brackets behind its name, or the last word of the name ("time_ns",
-/// "timestamp_nanoseconds").
+/// "timestamp_nanoseconds"); seconds of two columns.
 /// @param header of the file
 /// @param file name of the file, for messages
 /// @return nullopt if the header states none

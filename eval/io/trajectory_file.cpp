@@ -196,7 +196,7 @@ struct NamedText {
 
 /// Where the values of a row are.
 struct RowLayout {
-  std::size_t time = 0;
+  TimeColumns time;
   PoseColumns pose{};
   TimeUnit unit = TimeUnit::kSeconds;
   long header_line = 0;  ///< of a header that is no comment; 0 without one
@@ -209,7 +209,7 @@ TimeUnit named_unit(const NamedText& source, const TableHeader& header, TimeUnit
   RowReader rows(source.text, source.name);
   while (const std::optional<TextRow> row = rows.next()) {
     if (row->line > header.line)
-      return is_nanoseconds(row->text(*time_column(header))) ? TimeUnit::kNanoseconds : of_format;
+      return is_nanoseconds(row->text(time_columns(header)->stamp)) ? TimeUnit::kNanoseconds : of_format;
   }
   return of_format;
 }
@@ -225,7 +225,7 @@ bool is_other_length(std::string_view unit) {
 /// unit of positions than m
 RowLayout layout_of(const NamedText& source, const RowFormat& format) {
   const TableHeader header = find_header(source.text);
-  const std::optional<std::size_t> time = time_column(header);
+  const std::optional<TimeColumns> time = time_columns(header);
   const std::vector<std::size_t> p = columns_of(header, Quantity::kPosition);
   const std::vector<std::size_t> q = columns_of(header, Quantity::kQuaternion);
   RowLayout layout{.pose = consecutive_columns(1, format.order), .unit = format.unit};
@@ -295,7 +295,7 @@ LoadedTrajectory parse_rows(const NamedText& start, RowReader all, const RowRule
                       rules.format.columns + "\"");
     }
     if (!layout.is_named && builder.is_empty()) require_no_matrix(row);
-    const Timestamp t = row.time(layout.time, layout.unit);
+    const Timestamp t = stamp_of(row, layout.time, layout.unit);
     builder.add(row, t, parse_pose(row, layout.pose, rules.check));
   });
   faults.guard([&] {
@@ -444,7 +444,7 @@ bool is_key_line(std::string_view line) {
 TrajectoryFormat detect_format(std::string_view text, const std::string& name) {
   if (is_nmea(text)) return TrajectoryFormat::kNmea;
   const TableHeader header = find_header(text);
-  const std::size_t time = time_column(header).value_or(0);
+  const std::size_t time = time_columns(header).value_or(TimeColumns{}).stamp;
   const bool has_names = !columns_of(header, Quantity::kPosition).empty();
   if (has_names && time_unit(header, name) == TimeUnit::kNanoseconds) return TrajectoryFormat::kEuroc;
   RowReader rows(text, "");

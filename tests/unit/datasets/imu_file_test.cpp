@@ -92,6 +92,20 @@ TEST(ImuFile, ReadsTheColumnsThatTheHeaderNames) {
   }
 }
 
+TEST(ImuFile, JoinsSecondsAndNanosecondsOfTwoColumns) {
+  const TemporaryFolder folder;
+  FaultLog strict;
+  const auto samples = read_imu_file(
+      folder.write("imu.csv",
+                   "header.stamp.secs,header.stamp.nsecs,angular_velocity.x,angular_velocity.y,"
+                   "angular_velocity.z,linear_acceleration.x,linear_acceleration.y,linear_acceleration.z\n"
+                   "7,5,1,2,3,4,5,6\n"),
+      eval::TimeUnit::kNanoseconds, strict);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].t, Timestamp{7'000'000'005});
+  EXPECT_EQ(samples[0].gyro_b, Eigen::Vector3d(1, 2, 3));
+}
+
 TEST(ImuFile, AHeaderWithOtherUnitsOrColumnsIsAnError) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& header) {

@@ -171,12 +171,70 @@ TEST(Formats, ColumnsAreReadByTheNamesInTheHeader) {
   }
 }
 
+/// The rows of `kPath` with the whole seconds and the rest of each stamp in two columns.
+/// @param unit_ns of the rest
+std::string split_stamps(const std::string& header, std::int64_t unit_ns, bool rest_first = false) {
+  std::string text = header + "\n";
+  for (const auto& [pose, t] : kPath.poses) {
+    const std::string seconds = std::to_string(t.ns / 1'000'000'000);
+    const std::string rest = std::to_string(t.ns % 1'000'000'000 / unit_ns);
+    char row[200];
+    std::snprintf(row, sizeof row, "%s,%s,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n",
+                  (rest_first ? rest : seconds).c_str(), (rest_first ? seconds : rest).c_str(), pose.p.x(),
+                  pose.p.y(), pose.p.z(), pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w());
+    text += row;
+  }
+  return text;
+}
+
+TEST(Formats, SecondsAndNanosecondsInTwoColumnsAreOneStamp) {
+  const TemporaryFolder folder;
+  for (const std::string names :
+       {"secs,nsecs", "sec,nanosec", "header.stamp.secs,header.stamp.nsecs", "# sec,nsec",
+        "seconds,nanoseconds", "%field.header.stamp.secs,field.header.stamp.nsecs", "time_sec,time_nsec"}) {
+    SCOPED_TRACE(names);
+    const auto file = folder.write("split.csv", split_stamps(names + ",x,y,z,qx,qy,qz,qw", 1));
+    const LoadedTrajectory loaded = read_trajectory({.path = file});
+    expect_same(loaded.trajectory, kPath);
+    EXPECT_EQ(loaded.order_source, OrderSource::kNamed);
+    EXPECT_EQ(loaded.format, TrajectoryFormat::kTum);
+  }
+  const auto reversed = folder.write(
+      "reversed.csv", split_stamps("header.stamp.nanosec,header.stamp.sec,x,y,z,qx,qy,qz,qw", 1, true));
+  expect_same(read_trajectory({.path = reversed}).trajectory, kPath);
+  const auto micro = folder.write("micro.csv", split_stamps("tv_sec,tv_usec,x,y,z,qx,qy,qz,qw", 1000));
+  EXPECT_EQ(read_trajectory({.path = micro}).trajectory.poses[1].t.ns, kPath.poses[1].t.ns / 1000 * 1000);
+}
+
+TEST(Formats, TheStampOfTheHeaderIsPreferredToThatOfTheReception) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("bagpy.csv",
+                                 "Time,header.seq,header.stamp.secs,header.stamp.nsecs,position.x,position.y,"
+                                 "position.z,orientation.x,orientation.y,orientation.z,orientation.w\n"
+                                 "9.5,0,7,250000000,0,0,0,0,0,0,1\n9.6,1,7,350000000,0,0,0,0,0,0,1\n");
+  const LoadedTrajectory loaded = read_trajectory({.path = file});
+  EXPECT_EQ(loaded.trajectory.poses.at(1).t.ns, 7'350'000'000);
+}
+
+TEST(Formats, PartsOfAStampThatAreNoneAreAnError) {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& stamp, const std::vector<std::string>& parts) {
+    const auto file = folder.write("bad.csv", "secs,nsecs,x,y,z,qx,qy,qz,qw\n" + stamp + ",0,0,0,0,0,0,1\n");
+    SCOPED_TRACE(stamp);
+    expect_input_error([&] { static_cast<void>(read_trajectory({.path = file})); }, parts);
+  };
+  error_of("7,1000000000", {"bad.csv:2", "1000000000", "0 to 999999999"});  // the stamp itself, e.g. in ns
+  error_of("7,-1", {"bad.csv:2", "-1"});
+  error_of("7.5,500000000", {"bad.csv:2", "7.5", "whole"});
+  error_of("9223372036,900000000", {"bad.csv:2", "292 years"});
+  error_of("7,x", {"bad.csv:2", "\"x\""});
+}
+
 TEST(Formats, AHeaderThatNamesNoPoseIsAnError) {
   const TemporaryFolder folder;
   for (const std::string header :
        {"time,a,b,c,d,e,f,g", "t,x,y,z,roll,pitch,yaw,w", "t,x,x,z,qx,qy,qz,qw", "x,y,z,qx,qy,qz,qw,speed",
-        "header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw", "t (ms),x,y,z,qx,qy,qz,qw",
-        "header.stamp.nanosec,header.stamp.sec,x,y,z,qx,qy,qz,qw", "sec,nanoseconds,x,y,z,qx,qy,qz,qw",
+        "time,other_nsecs,x,y,z,qx,qy,qz,qw", "t (ms),x,y,z,qx,qy,qz,qw",
         "timestamp_usec,x,y,z,qx,qy,qz,qw,speed", "time_milliseconds,x,y,z,qx,qy,qz,qw,speed"}) {
     const auto file = folder.write("named.csv", header + "\n1,0,0,0,0,0,0,1,0\n2,0,0,0,0,0,0,1,0\n");
     SCOPED_TRACE(header);
