@@ -206,6 +206,25 @@ void require_mode(const BenchPlan& plan) {
                                                        plan.mode, fmt::join(kRunModes, "\", \"")));
 }
 
+/// The description in the folder of the plan, if it is there, else in the working folder.
+/// @throws InputError if it is in neither
+std::string description_of_plan(const std::string& name, const BenchPlan& plan) {
+  namespace fs = std::filesystem;
+  const std::string file = parse_system_name(name).file;
+  if (!file.ends_with(".toml")) return name;
+  const fs::path beside = (fs::path(plan.path).parent_path() / file).lexically_normal();
+  std::error_code ignored;
+  if (fs::exists(beside, ignored)) return beside.string() + name.substr(file.size());
+  if (fs::exists(file, ignored)) return name;
+  throw InputError(file, "is neither in the folder of the plan nor in the working folder; correct the path");
+}
+
+std::vector<std::string> descriptions_of(const BenchPlan& plan) {
+  std::vector<std::string> names;
+  for (const std::string& name : plan.systems) names.push_back(description_of_plan(name, plan));
+  return names;
+}
+
 /// The systems of the plan, and what they can do.
 void require_systems(const BenchPlan& plan) {
   std::vector<ExternalSystem> systems;
@@ -329,7 +348,7 @@ BenchPlan load_plan(const std::string& name, const std::vector<std::string>& sys
     plan.places[setting.key] = fmt::format("{}:{}", setting.file, setting.line);
   plan.text = source.text;
   if (plan.title.empty()) plan.title = plan.name;
-  if (!systems.empty()) plan.systems = systems;
+  plan.systems = systems.empty() ? at_place(plan, "systems", [&] { return descriptions_of(plan); }) : systems;
   validate_plan(plan);
   return plan;
 }

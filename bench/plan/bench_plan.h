@@ -86,9 +86,9 @@ struct BenchPlan {
   std::string base = "stillpoint";    ///< config to which the variants are applied
   std::vector<std::string> variants;  ///< of this odometry
   std::string ablation_base;          ///< the variant that the others are compared with; empty: no ablation
-  std::vector<std::string>
-      systems;                   ///< external systems: names, or files; see bench/systems/external_system.h
-  std::vector<int> seeds = {1};  ///< for rendering and for the odometry; see `PlannedRun::later_frames`
+  std::vector<std::string> systems;  ///< external systems: names, or files, relative to the plan, else to the
+                                     ///< working folder; see bench/systems/external_system.h
+  std::vector<int> seeds = {1};      ///< for rendering and for the odometry; see `PlannedRun::later_frames`
   int repetitions = 1;
   int max_frames = 0;  ///< process only the first frames of each sequence; 0 = all
   std::string mode = "sequential";

@@ -352,6 +352,27 @@ PlanMatrix system_plan(const TemporaryFolder& folder, const std::string& keys,
       "build", {});
 }
 
+TEST(ExternalSystemInPlan, IsFoundRelativeToThePlan) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "c+x/plans");
+  folder.write("c+x/s.toml", "name = \"s\"\ncommand = [\"s\"]\n[variant.few]\n[param]\n");
+  folder.write("c+x/plans/t.toml", "name = \"t\"\ncommand = [\"t\"]\n");
+  const auto plan = folder.write(
+      "c+x/plans/plan.toml",
+      "systems = [\"../s.toml\", \"t.toml\", \"orb_pnp\"]\n[rendered]\nsequences = [\"walking_xyz\"]\n");
+  const PlanMatrix matrix = expand_plan(load_plan(plan.string()), "build", {});
+  ASSERT_EQ(matrix.systems.size(), 3u);
+  EXPECT_EQ(matrix.systems[0].variant, "s");
+  EXPECT_EQ(matrix.systems[1].variant, "t");
+}
+
+TEST(ExternalSystemInPlan, OfNoFolderNamesBothPlaces) {
+  const TemporaryFolder folder;
+  const auto plan = folder.write("plan.toml", "systems = [\"none.toml\"]\n");
+  expect_input_error([&] { static_cast<void>(load_plan(plan.string())); },
+                     {"plan.toml:1", "none.toml", "folder of the plan"});
+}
+
 TEST(ExternalSystemInPlan, HasRunsAtThePointsOfItsParameters) {
   const TemporaryFolder folder;
   const PlanMatrix matrix = system_plan(folder, "variants = [\"vo\"]\n", "[sweep]\nparam.n = [1, 2]\n");
