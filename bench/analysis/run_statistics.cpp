@@ -201,6 +201,7 @@ AblationRow row_of(const AblationRow& names, const SubjectTable& base, const Sub
     coverages = wider_gap(coverages, of_sequence.coverages);
     if (!of_sequence.pairs.empty()) pairs.push_back(of_sequence.pairs);
   }
+  row.sequences = pairs.size();
   add_estimates(row, pairs);
   row.doubt = coverage_doubt(coverages, metric);
   return row;

@@ -53,6 +53,7 @@ struct AblationRow {
   std::size_t newly_failed = 0;         ///< pairs in which only the variant did not succeed
   std::size_t newly_without_value = 0;  ///< pairs in which it succeeded, but only base has a value
   std::size_t copies = 0;               ///< pairs that are left out as copies
+  std::size_t sequences = 0;            ///< with a pair
   std::optional<eval::PairedDifference> difference;
   std::optional<eval::RelativeChange> change;  ///< nullopt also if a value of 0 changes: only a difference
   /// "coverage 0.33, base 1.00: not comparable" of errors of poses, about the pair in which the coverages

@@ -237,6 +237,8 @@ void bind_run_statistics(py::module_& m) {
       .field("newly_without_value", &AblationRow::newly_without_value,
              "Pairs in which only the base has a value.")
       .field("copies", &AblationRow::copies, "Pairs that do not count.")
+      .field("sequences", &AblationRow::sequences,
+             "Number of sequences with a pair; the pairs of a single one are the replicates.")
       .field("difference", &AblationRow::difference, "eval.PairedDifference; None without pairs.")
       .field("change", &AblationRow::change,
              "eval.RelativeChange; None without pairs, or if a value of 0 changes.")

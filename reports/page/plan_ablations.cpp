@@ -127,7 +127,8 @@ std::string caption_html(const PlanAblation& ablation, const bench::MetricDescri
                                 : ", which these variants of plan " + escape_html(ablation.plan) + " extend");
   return fmt::format(
       "<caption>Change of {} relative to {}: Hodges-Lehmann estimate over n pairs of equal sequence and "
-      "seed (in the column all over n sequences), and its exact 95 % interval (Wilcoxon signed-rank test); "
+      "seed (in the column all over n sequences, of one sequence over its pairs), and its exact 95 % "
+      "interval (Wilcoxon signed-rank test); "
       "hatched: not significant, because the interval contains 0 or n is too small for one, or not "
       "comparable "
       "because a lost track leaves fewer frames. {}</caption>\n",

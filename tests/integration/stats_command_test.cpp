@@ -113,6 +113,27 @@ TEST_F(StatsCommand, AblationHasTheBaseOfThePlan) {
   EXPECT_NE(reversed.find("| -0.01 to -0.01 | -1.00"), std::string::npos) << reversed;
 }
 
+TEST_F(StatsCommand, AblationMarksTheRowOverAllOfOneSequence) {
+  fill(6);
+  const std::string mark = "pairs of one sequence";
+  const std::string note = "no statement on other sequences";
+  const std::string table = stats({"ablation"}).out;
+  const std::size_t row = table.find("(all)");
+  EXPECT_LT(table.find(mark, row), table.find('\n', row)) << table;
+  EXPECT_NE(table.find(note), std::string::npos) << table;
+  EXPECT_NE(stats({"ablation", "--format", "json"}).out.find(note), std::string::npos);
+  EXPECT_NE(stats({"ablation", "--format", "csv"}).err.find(note), std::string::npos);
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan plan{.name = "q", .title = "", .text = "ablation_base = \"vo\"\n", .run_keys = {}};
+  for (const std::string sequence : {"b", "c"}) {
+    for (const std::string variant : {"vo", "wo"})
+      plan.run_keys.push_back(add_run(
+          writer, {.variant = variant, .sequence = sequence, .config_hash = variant, .build = "newer"}));
+  }
+  writer.record_plan(plan);
+  EXPECT_EQ(stats({"ablation", "--plan", "q"}).out.find(mark), std::string::npos);
+}
+
 TEST_F(StatsCommand, TablesForProgramsHaveNumbers) {
   fill(6);
   const ProgramResult result = stats({"ablation", "--format", "json"});

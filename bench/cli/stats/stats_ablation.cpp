@@ -73,6 +73,9 @@ std::string change_text(const eval::RelativeChange& change) {
   return fmt::format("{:+.1f} % (n = {}, {})", 100.0 * change.median, change.count, interval);
 }
 
+/// Whether a row over all sequences has the pairs of the only one as replicates.
+bool is_of_one_sequence(const AblationRow& row) { return row.sequence.empty() && row.sequences == 1; }
+
 std::vector<std::string> cells_of(const AblationRow& row, const std::string& base) {
   const std::size_t count = row.difference ? row.difference->count : 0;
   std::vector<std::string> cells = {base, row.variant, row.sequence.empty() ? "(all)" : row.sequence,
@@ -85,6 +88,7 @@ std::vector<std::string> cells_of(const AblationRow& row, const std::string& bas
   } else {
     cells.insert(cells.end(), 4, "n/a");
   }
+  if (is_of_one_sequence(row)) cells.back() += "; pairs of one sequence";
   if (!row.doubt.empty()) cells.back() += "; " + row.doubt;
   return cells;
 }
@@ -147,6 +151,7 @@ struct AblationTable {
   std::set<std::size_t> counts;
   std::size_t copies = 0;
   std::size_t without_value = 0;
+  bool has_one_sequence = false;  ///< in a row over all
 };
 
 /// Ablations of one group of runs, as they are shown.
@@ -168,6 +173,7 @@ AblationTable table_of(const ShownAblations& shown) {
         table.rows.data.push_back(values_of(row, group.base, {shown.metric, report::data_value(shown.unit)}));
         table.copies += row.sequence.empty() ? row.copies : 0;
         table.without_value += row.sequence.empty() ? row.newly_without_value : 0;
+        table.has_one_sequence |= is_of_one_sequence(row);
         table.counts.insert(row.difference ? row.difference->count : 0);
       }
     }
@@ -207,6 +213,7 @@ int stats_ablation(const StatsArguments& arguments) {
   std::set<std::size_t> counts;
   std::size_t copies = 0;
   std::size_t without_value = 0;
+  bool has_one_sequence = false;
   const std::vector<BasedPlan> plans =
       arguments.base.empty() ? plans_with_base(store, arguments) : std::vector<BasedPlan>{};
   for (const RunGroup& group : selection.groups) {
@@ -219,6 +226,7 @@ int stats_ablation(const StatsArguments& arguments) {
     counts.merge(table.counts);
     copies += table.copies;
     without_value += table.without_value;
+    has_one_sequence |= table.has_one_sequence;
     if (!table.rows.rows.empty()) output.groups.push_back(std::move(table.rows));
   }
   if (output.groups.empty()) reject_base(selection, arguments);
@@ -230,6 +238,10 @@ int stats_ablation(const StatsArguments& arguments) {
           "pairs increased.",
           arguments.metric),
       interval_note("exact Wilcoxon signed-rank test", counts)};
+  if (has_one_sequence)
+    output.notes.emplace_back(
+        "(all) of one sequence is the row of that sequence: its interval is over its pairs, and no statement "
+        "on other sequences.");
   if (copies > 0) output.notes.push_back(copies_note(copies, "pairs"));
   if (without_value > 0)
     output.notes.push_back(without_value_note(without_value, "pairs: only the base has one"));
