@@ -198,6 +198,17 @@ TEST_F(StatsCommand, FindsTheRunsOfAFaultPlanFileByItsName) {
   EXPECT_TRUE(row.at("time_to_detect_s").is_null());
 }
 
+TEST_F(StatsCommand, AStoreWithoutAPlanOfFaultsIsAnErrorWithARemedy) {
+  fill(1);
+  for (const std::string name : {"faults", "imperfections"})
+    expect_rejected(stats({name}), {"store.sqlite", "no plan \"" + name + "\"", "stillpoint bench " + name,
+                                    "--plan", "contains: p"});
+  expect_rejected(stats({"faults", "--plan", "p"}), {"--plan", "file of the plan \"p\"", "p.toml"});
+  const std::string plan = (folder_.path() / "p.toml").string();
+  std::ofstream(plan) << "variants = [\"vo\"]\n[rendered]\nsequences = [\"market\"]\n";
+  expect_rejected(stats({"faults", "--plan", plan}), {"p.toml", "no key \"expected\"", "\"survive\" or"});
+}
+
 TEST_F(StatsCommand, FaultsOfRecordedSequencesHaveRows) {
   const std::string text =
       "faults = [\"none\", \"blank:start=1,duration=1\"]\nexpected = [\"survive\", \"survive\"]\n"

@@ -9,6 +9,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/stats/stats_actions.h"
+#include "bench/config/toml_source.h"
 #include "bench/model/metrics.h"
 #include "bench/plan/bench_plan.h"
 #include "bench/plan/plan_sequences.h"
@@ -239,15 +240,27 @@ class FaultMatrix {
   std::vector<report::DataRow> data_;
 };
 
+/// @throws InputError also if only the store has the plan, or it expects nothing
+BenchPlan plan_of_faults(const Store& store, const std::string& name) {
+  const bool is_stored =
+      std::ranges::any_of(store.plans(), [&](const auto& plan) { return plan.name == name; });
+  const std::vector<std::string> embedded = embedded_names(TomlKind::kPlan);
+  if (is_stored && std::ranges::find(embedded, name) == embedded.end())
+    throw InputError("--plan", "requires the file of the plan \"" + name + "\", e.g. " + name + ".toml");
+  BenchPlan plan = load_plan(name);
+  if (plan.expected.empty())
+    throw InputError(plan.path,
+                     "has no key \"expected\"; add it with \"survive\" or \"lose\" for each of \"faults\"");
+  return plan;
+}
+
 }  // namespace
 
 int stats_faults(const StatsArguments& arguments) {
-  StatsArguments chosen = arguments;
-  if (chosen.plan.empty()) chosen.plan = "faults";
-  const BenchPlan plan = load_plan(chosen.plan);
+  const Store store(arguments.store);
+  StatsArguments chosen = with_default_plan(store, arguments, "faults");
+  const BenchPlan plan = plan_of_faults(store, chosen.plan);
   chosen.plan = plan.name;  // runs are stored under it, also those of a plan file
-  if (plan.expected.empty()) throw InputError(plan.path, "has no key \"expected\"");
-  const Store store(chosen.store);
   const RunSelection selection = chosen_runs(store, chosen);
   StatsTable output{.header = {"sequence", "fault", "expected"},
                     .kind = "stats_faults",

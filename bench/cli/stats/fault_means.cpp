@@ -131,9 +131,8 @@ GroupRows mean_rows(const RunGroup& group) {
 }  // namespace
 
 int stats_imperfections(const StatsArguments& arguments) {
-  StatsArguments chosen = arguments;
-  if (chosen.plan.empty()) chosen.plan = "imperfections";
-  const Store store(chosen.store);
+  const Store store(arguments.store);
+  const StatsArguments chosen = with_default_plan(store, arguments, "imperfections");
   const RunSelection selection = chosen_runs(store, chosen);
   std::vector<GroupRows> groups;
   for (const RunGroup& group : selection.groups) {

@@ -94,6 +94,21 @@ RunSelection chosen_runs(const Store& store, const StatsArguments& arguments) {
   return select_runs(store, std::move(runs), arguments.build);
 }
 
+StatsArguments with_default_plan(const Store& store, StatsArguments arguments, const std::string& plan) {
+  if (!arguments.plan.empty()) return arguments;
+  std::vector<std::string> known;
+  for (const StoredPlan& stored : store.plans()) known.push_back(stored.name);
+  if (std::ranges::find(known, plan) == known.end())
+    throw InputError(
+        arguments.store,
+        fmt::format("contains no plan \"{0}\"; execute it with `stillpoint bench {0} --store {1}`, or "
+                    "name another plan with faults with --plan; it contains: {2}",
+                    plan, arguments.store,
+                    known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+  arguments.plan = plan;
+  return arguments;
+}
+
 void require_metric(const RunSelection& selection, const std::string& metric) {
   std::set<std::string> found;
   for (const RunGroup& group : selection.groups) {

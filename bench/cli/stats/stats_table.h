@@ -33,6 +33,12 @@ struct StatsArguments {
   StatsFormat format = StatsFormat::kTable;  ///< of `format_name`
 };
 
+/// The arguments with the plan of a statistic, unless they name another one.
+/// @param plan name of a plan with faults
+/// @throws InputError if the store has no plan of this name
+[[nodiscard]] StatsArguments with_default_plan(const Store& store, StatsArguments arguments,
+                                               const std::string& plan);
+
 /// The runs that the arguments select, in groups.
 /// @throws InputError if there is none, for an unknown plan or build
 [[nodiscard]] RunSelection chosen_runs(const Store& store, const StatsArguments& arguments);
