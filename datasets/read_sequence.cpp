@@ -2,8 +2,11 @@
 #include "datasets/read_sequence.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -246,18 +249,6 @@ void require_size(const std::filesystem::path& file, const cv::Mat& image, const
                                       std::to_string(camera.height) + "; " + remedy);
 }
 
-/// Meters in units of the rig; what is no distance, or too far for 16 bits, is 0.
-cv::Mat in_depth_units(const cv::Mat& meters, double units_per_m) {
-  cv::Mat depth(meters.size(), CV_16UC1);
-  std::transform(meters.begin<float>(), meters.end<float>(), depth.begin<std::uint16_t>(),
-                 [units_per_m](float value) -> std::uint16_t {
-                   const double units = std::round(static_cast<double>(value) * units_per_m);
-                   const bool valid = units >= 1.0 && units <= std::numeric_limits<std::uint16_t>::max();
-                   return valid ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
-                 });
-  return depth;
-}
-
 /// Measured inverse depths are larger than the true ones by `offset`; what is then no distance, or too far
 /// for 16 bits, is 0.
 void subtract_offset(cv::Mat& depth, double units_per_m, double offset) {
@@ -269,9 +260,41 @@ void subtract_offset(cv::Mat& depth, double units_per_m, double offset) {
                  });
 }
 
+cv::Mat stored_depth(const SequenceContent& content, std::size_t index) {
+  return content.images ? content.images->depth(index) : read_depth(content.frame_files[index].depth);
+}
+
+/// Whether an image file can contain floats.
+bool may_contain_floats(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return extension != ".png" && extension != ".jpg" && extension != ".jpeg" && extension != ".pgm";
+}
+
+/// The measurements of three depth images of floats; empty if they are of integers.
+std::vector<float> samples_of_float_depth(const SequenceContent& content) {
+  std::vector<float> samples;
+  const std::size_t count = content.frame_files.size();
+  if (count == 0) return samples;
+  for (const std::size_t i : std::set<std::size_t>{0, count / 2, count - 1}) {
+    const std::filesystem::path& file = content.frame_files[i].depth;
+    if (file.empty() || (!content.images && !may_contain_floats(file))) continue;
+    try {
+      const cv::Mat depth = stored_depth(content, i);
+      if (depth.type() != CV_32FC1) return {};
+      std::copy_if(depth.begin<float>(), depth.end<float>(), std::back_inserter(samples),
+                   [](float value) { return std::isfinite(value) && value > 0.0F; });
+    } catch (const InputError&) {
+      continue;  // reported where the frame is decoded
+    }
+  }
+  return samples;
+}
+
 cv::Mat load_depth(const SequenceContent& content, std::size_t index) {
   const std::filesystem::path& file = content.frame_files[index].depth;
-  cv::Mat depth = content.images ? content.images->depth(index) : read_depth(file);
+  cv::Mat depth = stored_depth(content, index);
   const Rig& rig = content.info.rig;
   if (depth.type() == CV_32FC1) depth = in_depth_units(depth, rig.depth_units_per_m);
   require_size(file, depth, content.info.depth_camera ? content.info.depth_camera->camera : rig.camera,
@@ -318,6 +341,8 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   correct_axes(content.info);
   check_overlap(content.info, faults);
   faults.guard([&content] { require_brightness(content); });
+  if (const auto finding = float_depth_finding(samples_of_float_depth(content)))
+    content.info.warnings.push_back("depth: " + *finding);
   for (const std::string& finding : imu_unit_findings(content.info))
     content.info.warnings.push_back("imu: " + finding);
   return content;

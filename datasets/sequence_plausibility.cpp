@@ -177,6 +177,15 @@ double likely_units(double estimate) {
   return distance(nearest) < std::log(kMaxFactor) ? nearest : estimate;
 }
 
+/// The first usual unit in which depths of this range are those of an RGB-D camera.
+std::optional<double> usual_units(double nearest, double farthest) {
+  for (const double units_per_m : kUsualUnitsPerM) {
+    if (nearest / units_per_m >= kLeastDepth_m && farthest / units_per_m <= kLargestDepth_m)
+      return units_per_m;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<std::string> imu_unit_findings(const SequenceInfo& info) {
@@ -203,6 +212,22 @@ std::vector<std::string> imu_unit_findings(const SequenceInfo& info) {
         "half of the angular rates exceed {:.1f} rad/s; are they in deg/s instead of rad/s?", middle));
   }
   return findings;
+}
+
+std::optional<std::string> float_depth_finding(const std::vector<float>& measurements) {
+  if (measurements.empty()) return std::nullopt;
+  const double near_m = percentile(measurements, 0.05);
+  const double far_m = percentile(measurements, 0.95);
+  if (near_m <= kLargestDepth_m && far_m >= kLeastDepth_m) return std::nullopt;
+  const std::string found = fmt::format(
+      "90 % of the measurements are from {:.4g} to {:.4g}, and floats are read as meters; is this the unit?",
+      near_m, far_m);
+  const std::optional<double> units_per_m = usual_units(near_m, far_m);
+  if (!units_per_m) return found + " Convert them to meters";
+  return found + fmt::format(
+                     " Divided by {0:g}, they are from {1:.2f} to {2:.2f} m: convert them to meters, or "
+                     "to 16-bit integers with [depth] scale = {0:g} in a rig.toml",
+                     *units_per_m, near_m / *units_per_m, far_m / *units_per_m);
 }
 
 std::optional<std::string> gravity_finding(const SequenceInfo& info) {
@@ -247,13 +272,11 @@ std::optional<std::string> ImagePlausibility::depth_unit_finding() const {
       "90 % of the measurements are from {:.2f} to {:.2f} m with {:g} units per meter; is the unit another "
       "one?",
       near_m, far_m, info_.rig.depth_units_per_m);
-  for (const double units_per_m : kUsualUnitsPerM) {
-    const double factor = units_per_m / info_.rig.depth_units_per_m;
-    if (near_m / factor < kLeastDepth_m || far_m / factor > kLargestDepth_m) continue;
-    return found + fmt::format(" With [depth] scale = {:g} in a rig.toml, they are from {:.2f} to {:.2f} m",
-                               units_per_m, near_m / factor, far_m / factor);
-  }
-  return found + " [depth] scale in a rig.toml sets the units per meter";
+  const double stated = info_.rig.depth_units_per_m;
+  const std::optional<double> units_per_m = usual_units(near_m * stated, far_m * stated);
+  if (!units_per_m) return found + " [depth] scale in a rig.toml sets the units per meter";
+  return found + fmt::format(" With [depth] scale = {:g} in a rig.toml, they are from {:.2f} to {:.2f} m",
+                             *units_per_m, near_m * stated / *units_per_m, far_m * stated / *units_per_m);
 }
 
 namespace {

@@ -27,6 +27,12 @@ inline constexpr double kLargestDepth_m = 12.0;  ///< and at most to about 10 m
 /// apart), or of which half exceed 5 rad/s.
 [[nodiscard]] std::vector<std::string> imu_unit_findings(const SequenceInfo& info);
 
+/// Depth images of floats are in meters. Measurements of which 95 % are beyond 12 m, or below 0.3 m, are in
+/// another unit, such as millimeters.
+/// @param measurements positive and finite
+/// @return the finding; nullopt if there is none, or no measurement
+[[nodiscard]] std::optional<std::string> float_depth_finding(const std::vector<float>& measurements);
+
 /// Compares gravity with the images: the mean specific force of a camera that is held upright points up, that
 /// is, along -y of the camera. Another direction (by more than 60 degrees) indicates swapped axes, an
 /// inverted sign, or a wrong T_b_c.

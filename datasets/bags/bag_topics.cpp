@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -91,19 +90,22 @@ cv::Mat decode_yuv(const ImageMessage& image, std::string_view place) {
   return rgb;
 }
 
-/// A depth in meters in units of `kFloatDepthUnitsPerM`; 0 if it is not a measurement.
-std::uint16_t units_of(float depth_m) {
-  const double units = std::round(depth_m * kFloatDepthUnitsPerM);
-  if (!(units >= 1.0 && units <= std::numeric_limits<std::uint16_t>::max())) return 0;
-  return static_cast<std::uint16_t>(units);
+cv::Mat decode_inverse_depth(const cv::Mat& quantized, float a, float b) {
+  cv::Mat meters(quantized.size(), CV_32FC1);
+  std::transform(quantized.begin<std::uint16_t>(), quantized.end<std::uint16_t>(), meters.begin<float>(),
+                 [a, b](std::uint16_t raw) { return raw == 0 ? 0.0F : a / (static_cast<float>(raw) - b); });
+  return meters;
 }
 
-cv::Mat decode_inverse_depth(const cv::Mat& quantized, float a, float b) {
-  cv::Mat depth(quantized.size(), CV_16UC1);
-  std::transform(quantized.begin<std::uint16_t>(), quantized.end<std::uint16_t>(),
-                 depth.begin<std::uint16_t>(), [a, b](std::uint16_t raw) -> std::uint16_t {
-                   return raw == 0 ? 0 : units_of(a / (static_cast<float>(raw) - b));
-                 });
+template <class Number>
+cv::Mat depth_values(const ImageMessage& image, int type, std::string_view place) {
+  cv::Mat depth(static_cast<int>(image.height), static_cast<int>(image.width), type);
+  for (int row = 0; row < depth.rows; ++row) {
+    ByteReader reader(image.data.substr(static_cast<std::size_t>(row) * image.step, image.step), place,
+                      {.big_endian = image.big_endian});
+    for (int column = 0; column < depth.cols; ++column)
+      depth.at<Number>(row, column) = reader.number<Number>();
+  }
   return depth;
 }
 
@@ -159,16 +161,8 @@ cv::Mat decode_depth_message(const ImageMessage& image, std::string_view place) 
                      "the encoding \"" + image.encoding +
                          "\" is not one of a depth image; select another topic with --topics");
   require_pixels(image, is_float ? 4 : 2, place);
-  cv::Mat depth(static_cast<int>(image.height), static_cast<int>(image.width), CV_16UC1);
-  for (int row = 0; row < depth.rows; ++row) {
-    ByteReader reader(image.data.substr(static_cast<std::size_t>(row) * image.step, image.step), place,
-                      {.big_endian = image.big_endian});
-    for (int column = 0; column < depth.cols; ++column) {
-      depth.at<std::uint16_t>(row, column) =
-          is_float ? units_of(reader.number<float>()) : reader.number<std::uint16_t>();
-    }
-  }
-  return depth;
+  return is_float ? depth_values<float>(image, CV_32FC1, place)
+                  : depth_values<std::uint16_t>(image, CV_16UC1, place);
 }
 
 cv::Mat decode_depth_message(const CompressedImageMessage& image, std::string_view place) {

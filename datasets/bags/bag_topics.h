@@ -25,11 +25,11 @@ enum class ImageContent { kColor, kDepth, kOther };
 /// compressedDepth.
 [[nodiscard]] ImageContent content_of_format(std::string_view format);
 
-/// Units per meter of depth images with values in meters (32FC1) after their conversion to 16 bits: the
-/// range is 13.1 m, as in the TUM benchmark.
+/// Units per meter of depth images with values in meters (32FC1) after their conversion to 16 bits, unless a
+/// rig.toml states others: the range is 13.1 m, as in the TUM benchmark.
 inline constexpr double kFloatDepthUnitsPerM = 5000.0;
 
-/// Whether depth is stored in meters, that is, in `kFloatDepthUnitsPerM` after decoding; else in raw units.
+/// Whether depth is stored in meters; else in raw units.
 [[nodiscard]] bool has_float_depth(std::string_view encoding_or_format);
 
 /// @return CV_8UC1, or CV_8UC3 in the order R, G, B
@@ -37,10 +37,9 @@ inline constexpr double kFloatDepthUnitsPerM = 5000.0;
 [[nodiscard]] cv::Mat decode_color_message(const ImageMessage& image, std::string_view place);
 [[nodiscard]] cv::Mat decode_color_message(const CompressedImageMessage& image, std::string_view place);
 
-/// Depth of 32 bits is rounded to 1/`kFloatDepthUnitsPerM` m; values that are not finite, not positive or too
-/// large become 0. A compressedDepth image is a PNG after a header of 12 bytes; of 32FC1, it contains
-/// quantized inverse depth d = A / (raw - B), with A and B in that header (compressed_depth_image_transport).
-/// @return CV_16UC1, 0 = not measured
+/// A compressedDepth image is a PNG after a header of 12 bytes; of 32FC1, it contains quantized inverse depth
+/// d = A / (raw - B), with A and B in that header (compressed_depth_image_transport).
+/// @return as `read_depth`; of quantized depth, 0 = not measured
 /// @throws InputError as above
 [[nodiscard]] cv::Mat decode_depth_message(const ImageMessage& image, std::string_view place);
 [[nodiscard]] cv::Mat decode_depth_message(const CompressedImageMessage& image, std::string_view place);

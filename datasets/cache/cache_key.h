@@ -68,7 +68,7 @@ constexpr const char* kUnfinishedExtension = ".new";  ///< while an index file i
 
 /// Version of the decoding: of gray values, registration and depth. Increase it whenever `decode_frame`
 /// returns other images for the same files.
-constexpr std::uint64_t kDecodingVersion = 1;
+constexpr std::uint64_t kDecodingVersion = 2;
 
 /// Hash of the digests, the calibration by which images are decoded and registered, and the versions of
 /// decoder and file format. Frame times and inertial data are not part of it: they are read from the sequence

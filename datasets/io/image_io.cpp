@@ -10,11 +10,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -492,6 +494,17 @@ std::optional<int> largest_deep_gray(const std::filesystem::path& file) {
   const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored);
   if (!png || png->image.type() != CV_16UC1) return std::nullopt;
   return *std::max_element(png->image.begin<std::uint16_t>(), png->image.end<std::uint16_t>());
+}
+
+cv::Mat in_depth_units(const cv::Mat& meters, double units_per_m) {
+  cv::Mat depth(meters.size(), CV_16UC1);
+  std::transform(meters.begin<float>(), meters.end<float>(), depth.begin<std::uint16_t>(),
+                 [units_per_m](float value) -> std::uint16_t {
+                   const double units = std::round(static_cast<double>(value) * units_per_m);
+                   const bool valid = units >= 1.0 && units <= std::numeric_limits<std::uint16_t>::max();
+                   return valid ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
+                 });
+  return depth;
 }
 
 cv::Mat decode_image(std::string_view bytes, const std::string& name) {

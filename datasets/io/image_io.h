@@ -44,6 +44,11 @@ struct GrayImage {
 /// @throws InputError as above
 [[nodiscard]] cv::Mat read_depth(const std::filesystem::path& file);
 
+/// Depth of 32-bit floats in 16 bits; values that are not finite, not positive or too far for 16 bits become
+/// 0.
+/// @param meters CV_32FC1
+[[nodiscard]] cv::Mat in_depth_units(const cv::Mat& meters, double units_per_m);
+
 /// Decode the bytes of a PNG or JPEG file, like `read_image` and `read_depth`.
 /// @param name of the image, for errors
 /// @throws InputError as above

@@ -258,6 +258,21 @@ TEST(BagSequence, SelectedTopicsOverrideTheSearch) {
   expect_input_error([&] { open("image=/b/image_raw"); }, {"--topics", "ROLE=TOPIC"});
 }
 
+TEST(BagSequence, DepthOfFloatsIsInTheUnitsThatARigFileStates) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.camera_info("/a/camera_info", 10.0);
+  for (int i = 0; i < 3; ++i) {
+    bag.image("/a/image_raw", at_ms(40 * i), "rgb8");
+    bag.image("/a/depth", at_ms(40 * i), "32FC1");
+  }
+  bag.finish();
+  folder.write("a.rig.toml", "depth = { scale = 1000 }\n");
+  const Frame frame = open_sequence(folder.path() / "a.bag")->load_frame(1);
+  EXPECT_EQ(frame.depth_units_per_m, 1000.0);
+  EXPECT_EQ(frame.depth.at<std::uint16_t>(2, 2), 2000);  // 2 m
+}
+
 TEST(BagSequence, RepeatedAndUnorderedStampsAreRepairedWithAWarning) {
   const TemporaryFolder folder;
   BagBuilder bag(folder.path() / "a.mcap");

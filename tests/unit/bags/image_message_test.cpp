@@ -67,12 +67,21 @@ TEST(ImageMessage, DepthOfSixteenBitsIsRead) {
   EXPECT_EQ(decode_depth_message(image, "bag").at<std::uint16_t>(0, 0), 0x0102);
 }
 
+TEST(ImageMessage, DepthInMetersIsKept) {
+  const std::vector<float> depth{1.0F, 1500.0F};  // in mm: not measured in 16 bits, which tell no unit
+  std::string data(depth.size() * sizeof(float), '\0');
+  std::memcpy(data.data(), depth.data(), data.size());
+  const cv::Mat read = decode_depth_message(image_of("32FC1", 2, 8, data), "bag");
+  ASSERT_EQ(read.type(), CV_32FC1);
+  EXPECT_EQ(read.at<float>(0, 1), 1500.0F);
+}
+
 TEST(ImageMessage, DepthInMetersIsRoundedAndInvalidDepthIsZero) {
   const std::vector<float> depth{1.0F,  0.00031F, std::numeric_limits<float>::quiet_NaN(),
                                  -1.0F, 14.0F,    std::numeric_limits<float>::infinity()};
   std::string data(depth.size() * sizeof(float), '\0');
   std::memcpy(data.data(), depth.data(), data.size());
-  const cv::Mat read = decode_depth_message(image_of("32FC1", 6, 24, data), "bag");
+  const cv::Mat read = in_depth_units(decode_depth_message(image_of("32FC1", 6, 24, data), "bag"), 5000.0);
   EXPECT_EQ(std::vector<std::uint16_t>(read.begin<std::uint16_t>(), read.end<std::uint16_t>()),
             (std::vector<std::uint16_t>{5000, 2, 0, 0, 0, 0}));
 }
@@ -82,7 +91,8 @@ TEST(ImageMessage, EveryDepthOf5000UnitsSurvivesTheConversionToMeters) {
     const float meters = static_cast<float>(raw / 5000.0);
     std::string data(sizeof(float), '\0');
     std::memcpy(data.data(), &meters, sizeof(float));
-    ASSERT_EQ(decode_depth_message(image_of("32FC1", 1, 4, data), "bag").at<std::uint16_t>(0, 0), raw);
+    const cv::Mat read = decode_depth_message(image_of("32FC1", 1, 4, data), "bag");
+    ASSERT_EQ(in_depth_units(read, kFloatDepthUnitsPerM).at<std::uint16_t>(0, 0), raw);
   }
 }
 
@@ -101,8 +111,8 @@ TEST(ImageMessage, CompressedDepthHasAHeader) {
   std::memcpy(inverse.data() + 4, &a, sizeof(a));
   const cv::Mat meters = decode_depth_message(
       CompressedImageMessage{.header = {}, .format = "32FC1; compressedDepth", .data = inverse}, "bag");
-  EXPECT_EQ(meters.at<std::uint16_t>(0, 0), 2 * 5000);
-  EXPECT_EQ(meters.at<std::uint16_t>(0, 1), 0);
+  EXPECT_EQ(meters.at<float>(0, 0), 2.0F);
+  EXPECT_EQ(meters.at<float>(0, 1), 0.0F);
   EXPECT_EQ(decode_depth_message(
                 CompressedImageMessage{.header = {}, .format = "16UC1; png compressed ", .data = png}, "bag")
                 .at<std::uint16_t>(0, 0),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "datasets/io/image_io.h"
 #include "tests/support/expect_input_error.h"
@@ -26,6 +27,14 @@ std::string stationary_rows(const char* value) {
   std::string text;
   for (int i = 0; i <= 120; ++i) text += std::to_string(99.9 + i / 400.0) + " 0 " + value + " 0\n";
   return text;
+}
+
+/// A portable float map: rows from the last to the first, little-endian.
+void write_pfm(const std::filesystem::path& file, const cv::Mat& image) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << "Pf\n" << image.cols << ' ' << image.rows << "\n-1.0\n";
+  for (int row = image.rows - 1; row >= 0; --row)
+    stream.write(reinterpret_cast<const char*>(image.ptr(row)), 4 * image.cols);
 }
 
 void write_valid_sequence(const TemporaryFolder& folder) {
@@ -207,6 +216,23 @@ TEST(SequenceValidator, ReportsDepthImagesWithoutValidPixels) {
   write_tum_folder(folder);
   write_png(folder.path() / "depth/1.045000.png", cv::Mat::zeros(6, 8, CV_16UC1));
   EXPECT_EQ(count(check_sequence(folder.path()), "1.045000.png", "no measured depth"), 1U);
+}
+
+TEST(SequenceValidator, NamesTheUnitOfDepthImagesOfFloats) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  std::string list;
+  for (const std::string stamp : {"1.005000", "1.045000", "1.085000"}) {
+    cv::Mat depth(6, 8, CV_32FC1, cv::Scalar(1500.0));  // in mm
+    depth.at<float>(0, 0) = 4000.0F;
+    write_pfm(folder.path() / ("depth/" + stamp + ".pfm"), depth);
+    list += stamp + " depth/" + stamp + ".pfm\n";
+  }
+  folder.write("depth.txt", list);
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(count(report, "depth", "read as meters"), 1U) << report_text(report);
+  EXPECT_EQ(count(report, "depth", "Divided by 1000, they are from 1.50 to"), 1U) << report_text(report);
+  EXPECT_EQ(count(report, "depth", "convert them to meters"), 1U);
 }
 
 TEST(SequenceValidator, RejectsAFolderThatIsNotASequence) {
