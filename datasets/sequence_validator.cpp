@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "datasets/gyro_check.h"
 #include "datasets/read_sequence.h"
 #include "datasets/sequence_plausibility.h"
 
@@ -164,6 +165,8 @@ CheckReport check_ground_truth(const SequenceInfo& info) {
     report.findings.push_back(
         warning("ground truth", fmt::format("covers {} of {} images", covered, info.frame_times.size())));
   }
+  if (const auto finding = gyro_truth_finding(info))
+    report.findings.push_back(warning("ground truth", *finding));
   return report;
 }
 

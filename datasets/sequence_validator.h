@@ -57,7 +57,7 @@ struct CheckOptions {
 /// timestamps out of order or repeated, gaps, streams that do not overlap the images in time, missing and
 /// undecodable images, images without recorded boxes where others have some, depth images without valid
 /// pixels, inertial data outside the range of sensors or in
-/// other units, and what `gravity_finding` and `ImagePlausibility` find.
+/// other units, and what `gravity_finding`, `gyro_truth_finding` and `ImagePlausibility` find.
 /// @throws InputError if the folder cannot be read as a sequence at all
 [[nodiscard]] CheckReport check_sequence(const std::filesystem::path& folder,
                                          const CheckOptions& options = {});

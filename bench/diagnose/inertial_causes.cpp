@@ -47,17 +47,18 @@ double mean_accel(const datasets::SequenceInfo& info) {
   return sum / static_cast<double>(info.imu.size());
 }
 
-double rms_rate(std::span<const RatePair> pairs) {
+double rms_rate(std::span<const datasets::RatePair> pairs) {
   double squares = 0.0;
-  for (const RatePair& pair : pairs) squares += pair.b.squaredNorm() / static_cast<double>(pairs.size());
+  for (const datasets::RatePair& pair : pairs)
+    squares += pair.b.squaredNorm() / static_cast<double>(pairs.size());
   return std::sqrt(squares);
 }
 
 /// Gyroscope in deg/s, accelerometer in g or mg.
-std::vector<Cause> unit_causes(const datasets::SequenceInfo& info, const RateIntegral& gyro,
-                               std::span<const RateInterval> by_images) {
+std::vector<Cause> unit_causes(const datasets::SequenceInfo& info, const datasets::RateIntegral& gyro,
+                               std::span<const datasets::RateInterval> by_images) {
   std::vector<Cause> causes;
-  const std::vector<RatePair> pairs = rate_pairs(gyro, by_images, info.rig.time_offset_s);
+  const std::vector<datasets::RatePair> pairs = rate_pairs(gyro, by_images, info.rig.time_offset_s);
   const double ratio = rate_ratio(pairs);
   if (pairs.size() >= 15 && rms_rate(pairs) > kLeastRate && datasets::is_degrees_ratio(ratio)) {
     causes.push_back(
@@ -94,8 +95,9 @@ Cause axes_cause(const Eigen::Matrix3d& P, PermutedSensor sensor, const std::str
           .name = fmt::format("axes of the {} swapped or inverted", name),
           .evidence = evidence,
           .remedy = gyro && accel && P.determinant() > 0.0
-                        ? fmt::format("turn T_b_c in [imu] of rig.toml by the axes {}", permutation_text(P))
-                        : fmt::format("reorder the columns of the file: {}", permutation_text(P)),
+                        ? fmt::format("turn T_b_c in [imu] of rig.toml by the axes {}",
+                                      datasets::permutation_text(P))
+                        : fmt::format("reorder the columns of the file: {}", datasets::permutation_text(P)),
           .strength = kFundamental,
           .correction = Correction{.change = [P, gyro, accel](auto& changed) {
             for (ImuSample& sample : changed.imu) {
@@ -131,7 +133,7 @@ Cause extrinsics_cause(const std::string& id, const std::string& name, const std
 /// The simplest permutation by whose residual no other one is clearly better: axes without rotation do not
 /// tell their order. All signs inverted, then single signs, swapped axes, and those with other signs.
 Eigen::Matrix3d simplest_permutation(const std::function<double(const Eigen::Matrix3d&)>& residual_with) {
-  const auto& all = axis_permutations();
+  const auto& all = datasets::axis_permutations();
   std::array<double, 48> residuals{};
   std::ranges::transform(all, residuals.begin(), residual_with);
   const double smallest = *std::ranges::min_element(residuals);
@@ -154,7 +156,7 @@ Eigen::Matrix3d simplest_permutation(const std::function<double(const Eigen::Mat
 /// period of a vibration later a gyroscope with inverted axes looks right
 /// @param accel other axes that the accelerometer has
 std::vector<Cause> axes_causes(const datasets::SequenceInfo& info,
-                               const std::array<std::vector<RatePair>, 2>& at_offsets,
+                               const std::array<std::vector<datasets::RatePair>, 2>& at_offsets,
                                const std::optional<AccelerometerAxes>& accel) {
   const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
   const auto residual = [&](const Eigen::Matrix3d& R) {
@@ -198,9 +200,10 @@ std::vector<Cause> axes_causes(const datasets::SequenceInfo& info,
 }
 
 /// A rotation of the camera on the body other than the stated one, by rates of a sensor in its frame.
-std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info, const std::vector<RatePair>& pairs,
+std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info,
+                                   const std::vector<datasets::RatePair>& pairs,
                                    const std::string& sensor = "images") {
-  const RotationFit fit = fit_rotation(pairs);
+  const datasets::RotationFit fit = fit_rotation(pairs);
   const Eigen::Quaterniond stated = info.rig.T_b_c.q;
   Eigen::Vector3d difference = log_so3(fit.q_a_b * stated.conjugate());
   if (fit.residual > kOtherAxes || relative_residual(pairs, stated.toRotationMatrix()) < fit.residual)
@@ -224,9 +227,9 @@ std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info, const std
 /// The center whose error turns the view as the rotation of the camera by images does, if that is not about
 /// the optical axis. Weaker than a center that the run or the ground truth tells.
 std::vector<Cause> center_beside_rotation(const datasets::SequenceInfo& info,
-                                          const std::vector<RatePair>& pairs) {
+                                          const std::vector<datasets::RatePair>& pairs) {
   constexpr double kMostOfWidth = 0.05;  // of the image, by which the center of a lens may be off
-  const RotationFit fit = fit_rotation(pairs);
+  const datasets::RotationFit fit = fit_rotation(pairs);
   const Eigen::Matrix3d R_c_b = info.rig.T_b_c.R().transpose();
   const Eigen::Vector3d turn_c = R_c_b * log_so3(fit.q_a_b * info.rig.T_b_c.q.conjugate());
   const double sigma_z_rad =
@@ -252,13 +255,13 @@ std::vector<Cause> center_beside_rotation(const datasets::SequenceInfo& info,
 }
 
 /// By the rates of the ground truth, where those of the images are too noisy to tell, but agree.
-std::vector<Cause> rotation_by_truth(const datasets::SequenceInfo& info, const RateIntegral& gyro,
-                                     const std::vector<RatePair>& by_images) {
-  std::vector<RateInterval> by_truth =
-      rates_between(RateIntegral(info.ground_truth.trajectory), info.frame_times);
-  for (RateInterval& interval : by_truth) interval.rate = info.ground_truth.T_c_f.q * interval.rate;
-  const std::vector<RatePair> pairs = rate_pairs(gyro, by_truth, info.rig.time_offset_s);
-  const RotationFit fit = fit_rotation(pairs);
+std::vector<Cause> rotation_by_truth(const datasets::SequenceInfo& info, const datasets::RateIntegral& gyro,
+                                     const std::vector<datasets::RatePair>& by_images) {
+  std::vector<datasets::RateInterval> by_truth =
+      rates_between(datasets::RateIntegral(info.ground_truth.trajectory), info.frame_times);
+  for (datasets::RateInterval& interval : by_truth) interval.rate = info.ground_truth.T_c_f.q * interval.rate;
+  const std::vector<datasets::RatePair> pairs = rate_pairs(gyro, by_truth, info.rig.time_offset_s);
+  const datasets::RotationFit fit = fit_rotation(pairs);
   const bool images_agree = relative_residual(by_images, fit.q_a_b.toRotationMatrix()) <
                             relative_residual(by_images, info.rig.T_b_c.R());
   const double stated = relative_residual(pairs, info.rig.T_b_c.R());
@@ -266,7 +269,7 @@ std::vector<Cause> rotation_by_truth(const datasets::SequenceInfo& info, const R
   return explains && images_agree ? rotation_causes(info, pairs, "ground truth") : std::vector<Cause>{};
 }
 
-std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const LagFit& fit) {
+std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const datasets::LagFit& fit) {
   const double difference_s = fit.lag_s - info.rig.time_offset_s;
   const double sigmas = std::abs(difference_s) / fit.sigma_s;
   if (std::abs(difference_s) < kLeastLag_s || sigmas < kSignificant) return {};
@@ -281,10 +284,10 @@ std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const LagFit
                Correction{.change = [offset_s](auto& changed) { changed.rig.time_offset_s = offset_s; }}}};
 }
 
-double drift_sigmas(const LagFit& fit) { return std::abs(fit.drift_ppm) / fit.drift_sigma_ppm; }
+double drift_sigmas(const datasets::LagFit& fit) { return std::abs(fit.drift_ppm) / fit.drift_sigma_ppm; }
 
 /// A lag that changes by more than a constant one may be wrong.
-std::vector<Cause> drift_causes(const datasets::SequenceInfo& info, const LagFit& fit) {
+std::vector<Cause> drift_causes(const datasets::SequenceInfo& info, const datasets::LagFit& fit) {
   const Timestamp first = info.frame_times.front();
   const double duration_s = seconds_between(first, info.frame_times.back());
   const double rate = 1e-6 * fit.drift_ppm, sigmas = drift_sigmas(fit);
@@ -402,17 +405,17 @@ std::vector<Cause> depth_scale_causes(const datasets::SequenceInfo& info, const 
 
 std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
   if (info.imu.empty()) return {};
-  const RateIntegral gyro(info.imu);
-  const std::vector<RateInterval> by_images = survey.rates();
+  const datasets::RateIntegral gyro(info.imu);
+  const std::vector<datasets::RateInterval> by_images = survey.rates();
   std::vector<Cause> causes = unit_causes(info, gyro, by_images);
   if (!causes.empty()) return causes;
   const auto add = [&](const std::vector<Cause>& more) {
     causes.insert(causes.end(), more.begin(), more.end());
   };
   add(sample_causes(info));
-  const std::optional<LagFit> lag = fit_lag(gyro, by_images, kLagRange_s);
+  const std::optional<datasets::LagFit> lag = fit_lag(gyro, by_images, kLagRange_s);
   const bool lag_is_known = lag && (lag->sigma_s < kLeastLag_s || drift_sigmas(*lag) > kSignificant);
-  const std::vector<RatePair> pairs =
+  const std::vector<datasets::RatePair> pairs =
       rate_pairs(gyro, by_images, lag_is_known ? lag->lag_s : info.rig.time_offset_s);
   const std::optional<AccelerometerAxes> accel_axes = accelerometer_axes(info, survey);
   const std::vector<Cause> axes =
@@ -446,13 +449,13 @@ namespace {
 
 /// Median of the rates that the gyroscope measures beside those between images, by axis [rad/s].
 Eigen::Vector3d gyro_bias(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
-  const std::vector<RatePair> pairs =
-      rate_pairs(RateIntegral(info.imu), survey.rates(), info.rig.time_offset_s);
+  const std::vector<datasets::RatePair> pairs =
+      rate_pairs(datasets::RateIntegral(info.imu), survey.rates(), info.rig.time_offset_s);
   const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3 && !pairs.empty(); ++axis) {
     std::vector<double> differences;
-    for (const RatePair& pair : pairs) differences.push_back((pair.a - R_b_c * pair.b)[axis]);
+    for (const datasets::RatePair& pair : pairs) differences.push_back((pair.a - R_b_c * pair.b)[axis]);
     const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
     std::ranges::nth_element(differences, middle);
     bias[axis] = *middle;

@@ -219,7 +219,7 @@ Cause truth_cause(const std::string& id, const std::string& name, const std::str
 
 /// The lag of the truth behind the camera, and the sensor that tells it.
 struct TruthLag {
-  LagFit fit;
+  datasets::LagFit fit;
   const char* sensor;
 };
 
@@ -233,7 +233,7 @@ std::optional<TruthLag> truth_lag(const TruthReport& report, const datasets::Seq
     by_gyro->fit.lag_s += info.rig.time_offset_s;
   }
   if (!by_images || !by_gyro) return by_images ? by_images : by_gyro;
-  const LagFit &images = by_images->fit, &gyro = by_gyro->fit;
+  const datasets::LagFit &images = by_images->fit, &gyro = by_gyro->fit;
   const bool contradict =
       std::abs(images.lag_s - gyro.lag_s) > kClear * std::hypot(images.sigma_s, gyro.sigma_s);
   return contradict || images.sigma_s < gyro.sigma_s ? by_images : by_gyro;
@@ -241,7 +241,7 @@ std::optional<TruthLag> truth_lag(const TruthReport& report, const datasets::Seq
 
 std::vector<Cause> lag_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
   const std::optional<TruthLag> found = truth_lag(report, info);
-  const LagFit* const lag = found ? &found->fit : nullptr;
+  const datasets::LagFit* const lag = found ? &found->fit : nullptr;
   if (lag == nullptr || std::abs(lag->lag_s) < kLeastTruthLag_s ||
       std::abs(lag->lag_s) < kClear * lag->sigma_s)
     return {};
@@ -373,12 +373,12 @@ TruthReport truth_report(const datasets::SequenceInfo& info, const RecordingSurv
   report.coverage = covered / static_cast<double>(info.frame_times.size());
   report.noise_m = noise_of(truth.poses);
   report.jumps = jumps_of(truth.poses);
-  const RateIntegral rates(truth);
-  const std::vector<RateInterval> by_images = survey.rates();
+  const datasets::RateIntegral rates(truth);
+  const std::vector<datasets::RateInterval> by_images = survey.rates();
   report.by_images = fit_lag(rates, by_images, kTruthLagRange_s);
   if (!info.imu.empty())
     report.by_gyro =
-        fit_lag(rates, rates_between(RateIntegral(info.imu), info.frame_times), kTruthLagRange_s);
+        fit_lag(rates, rates_between(datasets::RateIntegral(info.imu), info.frame_times), kTruthLagRange_s);
   const double lag_s = report.by_images ? report.by_images->lag_s : 0.0;
   const std::vector<MotionPair> pairs = motion_pairs(truth, visual, lag_s);
   report.bearing = bearing_of(pairs, info.ground_truth.T_c_f);
@@ -420,7 +420,7 @@ std::string truth_table_row(const std::string& name, const TruthReport& report,
   if (report.poses == 0)
     return fmt::format("{:<24} no ground truth{}\n", name,
                        info.ground_truth.trajectory.poses.empty() ? "" : " at the time of the images");
-  const auto lag_text = [](const std::optional<LagFit>& lag) {
+  const auto lag_text = [](const std::optional<datasets::LagFit>& lag) {
     return lag ? fmt::format("{:+.1f} +- {:.1f}", 1e3 * lag->lag_s, 1e3 * lag->sigma_s) : std::string("n/a");
   };
   const Pose T_f_c = info.ground_truth.T_c_f.inverse();

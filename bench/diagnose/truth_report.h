@@ -38,11 +38,11 @@ struct BearingFit {
 
 struct TruthReport {
   std::size_t poses = 0;
-  double coverage = 0.0;                    ///< fraction of the frames between poses at most 0.1 s apart
-  std::optional<LagFit> by_images;          ///< stamp of the truth minus that of the image
-  std::optional<LagFit> by_gyro;            ///< stamp of the truth minus that of the gyroscope
-  std::optional<RotationFit> rotation;      ///< R_f_c
-  std::optional<Eigen::Vector3d> position;  ///< of the camera in f [m]
+  double coverage = 0.0;                      ///< fraction of the frames between poses at most 0.1 s apart
+  std::optional<datasets::LagFit> by_images;  ///< stamp of the truth minus that of the image
+  std::optional<datasets::LagFit> by_gyro;    ///< stamp of the truth minus that of the gyroscope
+  std::optional<datasets::RotationFit> rotation;  ///< R_f_c
+  std::optional<Eigen::Vector3d> position;        ///< of the camera in f [m]
   Eigen::Vector3d position_sigma = Eigen::Vector3d::Zero();
   std::optional<BearingFit> bearing;  ///< nullopt with fewer than five seconds forward or backward
   std::optional<ScaleFit> scale;      ///< nullopt if its deviation exceeds 25 %

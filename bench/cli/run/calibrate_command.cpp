@@ -20,7 +20,6 @@
 #include "bench/cli/run/calibration_report.h"
 #include "bench/cli/run/sequence_playback.h"
 #include "bench/config/config_file.h"
-#include "bench/diagnose/evidence/angular_rates.h"
 #include "bench/diagnose/evidence/recording_survey.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/record/output_folder.h"
@@ -29,6 +28,7 @@
 #include "core/calibration/calibrate.h"
 #include "core/calibration/calibration_recording.h"
 #include "core/geometry/so3.h"
+#include "datasets/angular_rates.h"
 #include "datasets/calibration/rig_yaml_text.h"
 #include "eval/io/trajectory_file.h"
 #include "reports/drawing/drawing.h"
@@ -170,20 +170,20 @@ class FrameRates {
     t_ = t;
     q_w_b_ = update.state.T_w_b.q;
   }
-  [[nodiscard]] const std::vector<RateInterval>& intervals() const { return rates_; }
+  [[nodiscard]] const std::vector<datasets::RateInterval>& intervals() const { return rates_; }
 
  private:
   int segment_ = -1;
   Timestamp t_;
   Eigen::Quaterniond q_w_b_ = Eigen::Quaterniond::Identity();
-  std::vector<RateInterval> rates_;
+  std::vector<datasets::RateInterval> rates_;
 };
 
 /// Delay and rotation by the angular rates of both.
 /// @throws InputError if the ground truth is not of this time, or does not turn as the recording does
 CalibrationTruth started_truth(const std::string& file, const Trajectory& trajectory,
-                               std::vector<RateInterval> rates) {
-  const auto is_apart = [&](const RateInterval& interval) {
+                               std::vector<datasets::RateInterval> rates) {
+  const auto is_apart = [&](const datasets::RateInterval& interval) {
     return trajectory.poses.empty() || interval.from < trajectory.poses.front().t ||
            trajectory.poses.back().t < interval.to;
   };
@@ -192,14 +192,15 @@ CalibrationTruth started_truth(const std::string& file, const Trajectory& trajec
     throw InputError(file,
                      "has no poses at the time of the frames; give the ground truth of this recording, "
                      "stamped to half a second by its clock");
-  const RateIntegral truth(trajectory);
+  const datasets::RateIntegral truth(trajectory);
   constexpr int kSteps = 100;
-  RotationFit best{.residual = kLargestTruthResidual};
+  datasets::RotationFit best{.residual = kLargestTruthResidual};
   int best_step = kSteps;
   for (int step = -kSteps; step <= kSteps; ++step) {
-    const std::vector<RatePair> pairs = rate_pairs(truth, rates, kLargestTruthDelay_s * step / kSteps);
+    const std::vector<datasets::RatePair> pairs =
+        rate_pairs(truth, rates, kLargestTruthDelay_s * step / kSteps);
     if (pairs.size() < kLeastTruthFrames || 2 * pairs.size() < rates.size()) continue;
-    const RotationFit fit = fit_rotation(pairs);
+    const datasets::RotationFit fit = fit_rotation(pairs);
     if (fit.residual >= best.residual) continue;
     best = fit;
     best_step = step;

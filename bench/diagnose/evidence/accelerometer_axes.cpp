@@ -173,7 +173,7 @@ constexpr double kAllBlocks = -2.0;
 /// @return nullopt if no other axes follow the poses clearly better
 std::optional<AccelerometerAxes> best_axes(const std::vector<std::vector<Sides>>& blocks) {
   AccelerometerAxes found{.stated = sums_of(blocks, Eigen::Matrix3d::Identity(), kAllBlocks).correlation()};
-  for (const Eigen::Matrix3d& P : axis_permutations()) {
+  for (const Eigen::Matrix3d& P : datasets::axis_permutations()) {
     const double correlation = sums_of(blocks, P, kAllBlocks).correlation();
     if (correlation <= found.correlation) continue;
     found.correlation = correlation;
@@ -186,9 +186,10 @@ std::optional<AccelerometerAxes> best_axes(const std::vector<std::vector<Sides>>
 /// Whether the gyroscope follows the ground truth much better with these axes.
 bool gyroscope_has(const Eigen::Matrix3d& P, const datasets::SequenceInfo& info) {
   constexpr double kBetterResidual = 0.6;
-  const std::vector<RatePair> pairs = rate_pairs(
-      RateIntegral(info.imu), rates_between(RateIntegral(info.ground_truth.trajectory), info.frame_times),
-      info.rig.time_offset_s);
+  const std::vector<datasets::RatePair> pairs =
+      rate_pairs(datasets::RateIntegral(info.imu),
+                 rates_between(datasets::RateIntegral(info.ground_truth.trajectory), info.frame_times),
+                 info.rig.time_offset_s);
   const Eigen::Matrix3d R_b_f = (info.rig.T_b_c * info.ground_truth.T_c_f).R();
   return relative_residual(pairs, P.transpose() * R_b_f) < kBetterResidual * relative_residual(pairs, R_b_f);
 }

@@ -81,8 +81,8 @@ std::optional<Pose> motion_between(const Trajectory& trajectory, Timestamp last,
 
 }  // namespace
 
-std::vector<RateInterval> RecordingSurvey::rates() const {
-  std::vector<RateInterval> rates;
+std::vector<datasets::RateInterval> RecordingSurvey::rates() const {
+  std::vector<datasets::RateInterval> rates;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     if (!frames[i].T_now_last || frames[i].same_image) continue;
     const Timestamp from = frames[i - 1].t, to = frames[i].t;

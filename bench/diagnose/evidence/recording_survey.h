@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "bench/diagnose/evidence/angular_rates.h"
 #include "core/geometry/pose.h"
+#include "datasets/angular_rates.h"
 #include "datasets/sensor_stream.h"
 #include "datasets/sequence_plausibility.h"
 
@@ -38,7 +38,7 @@ struct RecordingSurvey {
   std::optional<datasets::DepthScaleByTruth> depth_scale{};  ///< by which depth is too small
 
   /// Angular rates of the camera between the frames whose images determine them.
-  [[nodiscard]] std::vector<RateInterval> rates() const;
+  [[nodiscard]] std::vector<datasets::RateInterval> rates() const;
 };
 
 /// @throws InputError for a recording without inertial data whose first frame has no depth image: the

@@ -49,7 +49,7 @@ struct TurningRig {
   }
 
   std::vector<ImuSample> imu;
-  std::vector<RateInterval> rates;
+  std::vector<datasets::RateInterval> rates;
   RecordingSurvey survey;
   datasets::SequenceInfo info;
 };

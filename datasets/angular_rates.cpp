@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/diagnose/evidence/angular_rates.h"
+#include "datasets/angular_rates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
 
-namespace stillpoint::bench {
+namespace stillpoint::datasets {
 namespace {
 
 constexpr double kMaxTruthInterval_s = 0.1;
@@ -295,4 +295,4 @@ std::string permutation_text(const Eigen::Matrix3d& P) {
   return "(x, y, z) <- (" + text + ")";
 }
 
-}  // namespace stillpoint::bench
+}  // namespace stillpoint::datasets

@@ -21,7 +21,7 @@
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
 
-namespace stillpoint::bench {
+namespace stillpoint::datasets {
 
 /// The mean angular rate of a sensor over any interval.
 class RateIntegral {
@@ -97,4 +97,4 @@ struct LagFit {
 /// "(x, y, z) -> (y, -x, z)": rows of the matrix.
 [[nodiscard]] std::string permutation_text(const Eigen::Matrix3d& P);
 
-}  // namespace stillpoint::bench
+}  // namespace stillpoint::datasets
