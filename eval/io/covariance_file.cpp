@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/decompositions.h"
+#include "eval/io/column_header.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::eval {
@@ -85,6 +86,13 @@ InputError no_covariance(const TextRow& row) {
 /// Whether the row names columns instead of containing numbers.
 bool is_header(const TextRow& row) { return row.fields.empty() || !parse_number(row.fields.front()); }
 
+/// Whether the header names a column of the pose where covariances would be.
+bool has_pose_behind(std::string_view text) {
+  const TableHeader header = find_header(text);
+  return std::ranges::any_of(columns_of(header, Quantity::kQuaternion),
+                             [](std::size_t column) { return column >= kColumnsOfPose; });
+}
+
 }  // namespace
 
 StampedCovariance covariance_of(Timestamp t, std::span<const double, 36> matrix) {
@@ -93,6 +101,7 @@ StampedCovariance covariance_of(Timestamp t, std::span<const double, 36> matrix)
 }
 
 std::optional<CovarianceTable> find_covariances(std::string_view text, const std::string& name) {
+  if (has_pose_behind(text)) return std::nullopt;
   CovarianceTable table;
   RowReader rows(text, name);
   while (const std::optional<TextRow> row = rows.next()) {
@@ -111,6 +120,7 @@ std::optional<CovarianceTable> find_covariances(std::string_view text, const std
 
 std::optional<InputError> fault_in_covariances(std::string_view text, const std::string& name) {
   std::optional<InputError> fault;
+  if (has_pose_behind(text)) return fault;
   std::size_t others = 0;
   std::size_t covariances = 0;
   RowReader rows(text, name);

@@ -52,6 +52,13 @@ TEST(CovarianceFile, ThoseOfOpenVinsAreOfTheRotationInTheBody) {
   EXPECT_TRUE(rows[1].position.isZero());
 }
 
+TEST(CovarianceFile, ColumnsOfAPoseThatBeginsLaterAreNoCovariances) {
+  const std::string text =
+      "secs,nsecs,x,y,z,qx,qy,qz,qw,a,b,c,d,e\n1,0,0,0,0,0,0,0,1,1,1,1,1,1\n2,0,0,0,0,0,0,0,1,1,1,1,1,1\n";
+  EXPECT_FALSE(find_covariances(text, "a"));
+  EXPECT_FALSE(fault_in_covariances(text + "3,0,0,0,0,0,0,0,1,-1,1,1,1,1\n", "a"));
+}
+
 TEST(CovarianceFile, OtherColumnsAreNoCovariances) {
   EXPECT_FALSE(find_covariances(kPoseRow + "\n", "a"));
   EXPECT_FALSE(find_covariances(kPoseRow + "1 2 3 4 5 6 7\n", "a"));
