@@ -117,6 +117,22 @@ std::string coverage_doubt(const CoveragePair& coverages, const std::string& met
   return fmt::format("coverage {:.2f}, base {:.2f}: not comparable", coverages.changed, coverages.base);
 }
 
+/// Of an RPE of few pairs of poses in a run of either variant.
+std::string few_pairs_doubt(std::span<const StoredRun> runs, const std::string& base, const AblationRow& row,
+                            const std::string& metric) {
+  std::vector<const StoredRun*> compared;
+  for (const StoredRun& run : runs) {
+    const RunIdentity& identity = run.identity;
+    const bool is_of_row = row.sequence.empty() || identity.sequence == row.sequence;
+    if (is_of_row && (identity.variant == base || identity.variant == row.variant)) compared.push_back(&run);
+  }
+  return few_rpe_pairs_note(compared, metric);
+}
+
+void add_doubt(AblationRow& row, const std::string& doubt) {
+  if (!doubt.empty()) row.doubt += (row.doubt.empty() ? "" : "; ") + doubt;
+}
+
 /// Pairs of one sequence.
 class SequencePairs {
  public:
@@ -266,13 +282,15 @@ std::vector<AblationRow> ablation(std::span<const StoredRun> runs, const std::st
                                    "\"; existing variants: " + fmt::format("{}", fmt::join(variants, ", ")));
   }
   const SubjectTable base_table = subjects_of(runs, base, metric);
+  std::vector<std::string> sequences = names_in_order(runs, &RunIdentity::sequence);
+  sequences.insert(sequences.begin(), "");  // all
   std::vector<AblationRow> rows;
   for (const std::string& variant : variants) {
     if (variant == base) continue;
     const SubjectTable table = subjects_of(runs, variant, metric);
-    rows.push_back(row_of({.variant = variant, .sequence = ""}, base_table, table, metric));
-    for (const std::string& sequence : names_in_order(runs, &RunIdentity::sequence)) {
+    for (const std::string& sequence : sequences) {
       rows.push_back(row_of({.variant = variant, .sequence = sequence}, base_table, table, metric));
+      add_doubt(rows.back(), few_pairs_doubt(runs, base, rows.back(), metric));
     }
   }
   return rows;

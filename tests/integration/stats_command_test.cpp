@@ -68,6 +68,20 @@ TEST_F(StatsCommand, SummarizesTheNewestBuildAndSaysWhatWasLeftOut) {
   EXPECT_NE(result.out.find("Left out, other builds: older (6 runs)"), std::string::npos) << result.out;
 }
 
+TEST_F(StatsCommand, RunsThatAllFailedAreCounted) {
+  {
+    bench::StoreWriter writer(file_);
+    const bench::RunIdentity identity{.variant = "vo", .sequence = "a"};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity,
+                  {.outcome = bench::Outcome::kCrashed, .metrics = {{"process_wall_s", "", "s", 1.0}}});
+  }
+  const ProgramResult result = stats({"summary"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("| a        | vo      |       | 1    | 1      | 0 "), std::string::npos)
+      << result.out;
+}
+
 TEST_F(StatsCommand, NamesRelativeErrorsOfFewPairs) {
   {
     bench::StoreWriter writer(file_);
@@ -312,6 +326,31 @@ TEST_F(StatsCommand, FaultTotalsAreThoseOfTheRunsThatEnded) {
   const ProgramResult result = stats({"faults", "--plan", plan});
   EXPECT_NE(result.out.find("30.00 %"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("20.00 %"), std::string::npos) << result.out;
+}
+
+TEST_F(StatsCommand, TheFaultMatrixNamesTheRunsThatItLeavesOut) {
+  const std::string text =
+      "variants = [\"vo\"]\nfaults = [\"blank:start=1,duration=1\"]\nexpected = [\"survive\"]\n"
+      "[rendered]\nsequences = [\"market\"]\n";
+  const std::string plan = (folder_.path() / "seeds.toml").string();
+  std::ofstream(plan) << text;
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan stored{.name = "seeds", .title = "", .text = text, .run_keys = {}};
+  for (int seed = 1; seed <= 3; ++seed) {
+    const bench::RunIdentity identity{
+        .variant = "vo", .sequence = "market + blank:start=1,duration=1", .seed = seed};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = {{"false_confidence", "", "", seed == 1 ? 0.0 : 0.3},
+                                         {"error_after_recovery_m", "", "m", 0.005}}});
+    stored.run_keys.push_back(bench::run_key(identity));
+  }
+  writer.record_plan(stored);
+  const ProgramResult result = stats({"faults", "--plan", plan});
+  EXPECT_NE(result.out.find("Left out: 2 runs of other seeds or repetitions"), std::string::npos)
+      << result.out;
+  const nlohmann::json json =
+      nlohmann::json::parse(stats({"faults", "--plan", plan, "--format", "json"}).out);
+  EXPECT_NE(json.at("notes").dump().find("Left out: 2 runs"), std::string::npos) << json;
 }
 
 // As in a summary.

@@ -62,6 +62,13 @@ const StoredRun* find_run(const RunGroup& group, const std::string& variant, con
   return found == group.runs.end() ? nullptr : &*found;
 }
 
+/// Of one variant on one sequence.
+std::size_t count_runs(const RunGroup& group, const RunIdentity& identity) {
+  return static_cast<std::size_t>(std::ranges::count_if(group.runs, [&](const StoredRun& run) {
+    return run.identity.variant == identity.variant && run.identity.sequence == identity.sequence;
+  }));
+}
+
 FaultOutcome outcome_of(const StoredRun& run, double max_error_m, const std::string& expected) {
   if (run.outcome != Outcome::kOk) return {.text = outcome_name(run.outcome)};
   const std::optional<double> wrong = metric_value(run, metric_id::kFalseConfidence);
@@ -202,6 +209,9 @@ class FaultMatrix {
     return std::ranges::any_of(tallies_, [](const FaultTally& tally) { return tally.runs > 0; });
   }
 
+  /// Runs of other seeds and repetitions than those of the cells.
+  [[nodiscard]] std::size_t left_out() const { return left_out_; }
+
   /// Whether all runs of the first variant did as expected.
   [[nodiscard]] bool is_as_expected() const { return tallies_.front().as_expected == tallies_.front().runs; }
 
@@ -213,7 +223,10 @@ class FaultMatrix {
           group_,
           {.variant = variants_[v], .sequence = fmt::format("{}{}{}", sequence, kFaultSeparator, fault)},
           expected);
-      if (one.run != nullptr) count(one, tallies_[v]);
+      if (one.run != nullptr) {
+        count(one, tallies_[v]);
+        left_out_ += count_runs(group_, one.run->identity) - 1;
+      }
       rows_.back().push_back(cell_of(one));
       add_data({sequence, fault, expected, variants_[v]}, score_values(one, true));
     }
@@ -238,6 +251,7 @@ class FaultMatrix {
   std::vector<FaultTally> tallies_;  ///< per variant
   report::TableRows rows_;
   std::vector<report::DataRow> data_;
+  std::size_t left_out_ = 0;
 };
 
 /// @throws InputError also if only the store has the plan, or it expects nothing
@@ -274,6 +288,7 @@ int stats_faults(const StatsArguments& arguments) {
   report::TableRows totals;
   bool all_expected = true;
   bool has_runs = false;
+  std::size_t left_out = 0;
   for (const RunGroup& group : selection.groups) {
     const FaultMatrix matrix(plan, group);
     output.groups.push_back(matrix.rows());
@@ -281,12 +296,19 @@ int stats_faults(const StatsArguments& arguments) {
     totals.insert(totals.end(), rows.begin() + (totals.empty() ? 0 : 1), rows.end());
     all_expected = all_expected && matrix.is_as_expected();
     has_runs = has_runs || matrix.has_runs();
+    left_out += matrix.left_out();
   }
   if (!has_runs)
     throw InputError(chosen.store, "contains no run with a fault of " + plan.path +
                                        "; execute them with `stillpoint bench`");
   if (chosen.format != StatsFormat::kTable)
     output.notes = {"The expectation is that of the first variant; runs without a fault have none."};
+  if (left_out > 0)
+    output.notes.push_back(
+        fmt::format("Left out: {} runs of other seeds or repetitions. Each cell is the first of its runs, "
+                    "totals and exit "
+                    "status are those of the cells.",
+                    left_out));
   print_stats(output, chosen);
   if (chosen.format == StatsFormat::kTable)
     std::cout << '\n' << report::format_table(totals, report::TableStyle::kMarkdown);

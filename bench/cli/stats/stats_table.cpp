@@ -111,12 +111,13 @@ StatsArguments with_default_plan(const Store& store, StatsArguments arguments, c
 
 void require_metric(const RunSelection& selection, const std::string& metric) {
   std::set<std::string> found;
+  bool is_only_failed = true;  // then any known metric has the result "failed"
   for (const RunGroup& group : selection.groups) {
     for (const StoredRun& run : group.runs) {
+      is_only_failed = is_only_failed && run.outcome != Outcome::kOk;
       for (const Metric& one : run.metrics) found.insert(one.name);
     }
   }
-  const bool is_only_failed = found.empty();  // then any known metric has the result "failed"
   if (is_only_failed) {
     for (const MetricDescriptor& known : all_metrics()) found.emplace(known.id);
   }

@@ -108,6 +108,19 @@ TEST(Ablation, ErrorsOverFewerFramesAreNotComparable) {
   EXPECT_EQ(ablation(runs, "full", "coverage")[1].doubt, "");  // it is the difference itself
 }
 
+TEST(Ablation, AnRpeOfFewPairsIsDoubtful) {
+  std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("wo", "a", 1, 0.4),
+                                 run_of("full", "b", 1, 1.0), run_of("wo", "b", 1, 0.9)};
+  for (StoredRun& run : runs)
+    run.metrics = {{"rpe_trans_rmse_m_per_s", "", "m/s", 0.1}, {"rpe_pairs", "", "", 20.0}};
+  runs[3].metrics.back().value = 5.0;
+  const std::vector<AblationRow> rows = ablation(runs, "full", "rpe_trans_rmse_m_per_s");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].doubt, "RPE of only 5 pairs of poses: not ranked");
+  EXPECT_EQ(rows[1].doubt, "");
+  EXPECT_EQ(rows[2].doubt, rows[0].doubt);
+}
+
 TEST(Ablation, AChangeFromZeroHasADifferenceButNoRatio) {
   std::vector<StoredRun> runs;
   for (int seed = 1; seed <= 6; ++seed) {
