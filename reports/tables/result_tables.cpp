@@ -7,6 +7,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/model/metrics.h"
 #include "bench/model/run_notes.h"
@@ -39,6 +40,18 @@ ReportTable with_best_in_columns(ReportTable table, bool larger_is_better) {
   if (std::string note = best_note(table, "column", larger_is_better); !note.empty())
     table.notes.push_back(std::move(note));
   return table;
+}
+
+/// Names the machines if there are several: medians over them are those of neither.
+void add_machines(ReportTable& table, std::span<const bench::StoredRun> runs) {
+  std::set<std::string> machines;
+  for (const bench::StoredRun& run : runs) {
+    if (!run.machine.empty()) machines.insert(run.machine);
+  }
+  if (machines.size() > 1)
+    table.notes.push_back(
+        fmt::format("Runs of {} machines are taken together: {}; `stillpoint stats` shows them separately.",
+                    machines.size(), fmt::join(machines, "; ")));
 }
 
 /// Whether other processes on the machine change a metric.
@@ -76,6 +89,7 @@ ReportTable metric_table(std::span<const bench::StoredRun> runs, const bench::Me
     table.rows.push_back(std::move(row));
   }
   table.notes = {"Medians over n successful runs; equal repetitions of a deterministic run count once."};
+  add_machines(table, runs);
   // Costs depend on the machine and on what a system computes: no system is best.
   const bool has_best = metric.source == bench::MetricSource::kTrajectory;
   return has_best ? with_best_in_columns(std::move(table),
@@ -149,6 +163,7 @@ ReportTable cost_table(std::span<const bench::StoredRun> runs) {
     table.rows.push_back(std::move(row));
   }
   table.notes = {"Modules are averaged per call, threads per frame; median over all runs of a variant."};
+  add_machines(table, runs);
   return table;
 }
 

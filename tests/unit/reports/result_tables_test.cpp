@@ -66,6 +66,20 @@ TEST(MetricTables, ShowMediansAndMarkTheBestOfEachColumn) {
   EXPECT_EQ(table.rows[1].cells[0].protocol, "compat:tum");
 }
 
+TEST(MetricTables, NameTheMachinesOfRunsThatTheyPool) {
+  std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 3.0)};
+  for (bench::StoredRun& run : runs) run.machine = "Xeon, 4 processors";
+  EXPECT_TRUE(std::ranges::none_of(metric_tables(runs).front().notes, [](const std::string& note) {
+    return note.find("machine") != std::string::npos;
+  }));
+  runs[1].machine = "Orin, 8 processors";
+  for (const ReportTable& table : {metric_tables(runs).front(), cost_table(runs)})
+    EXPECT_NE(std::ranges::find(table.notes,
+                                "Runs of 2 machines are taken together: Orin, 8 processors; Xeon, 4 "
+                                "processors; `stillpoint stats` shows them separately."),
+              table.notes.end());
+}
+
 TEST(MetricTables, MarkFailedAndPartialCells) {
   const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), crashed_run("a", "s"),
                                               crashed_run("b", "s")};
