@@ -262,12 +262,16 @@ std::vector<ModuleCost> read_module_times(const ExternalSystem& system, const fs
   const std::string text =
       system.timings.empty() ? process.messages : eval::read_text_file(work / system.timings);
   const std::string file = system.timings.empty() ? "messages of the program" : system.timings;
-  const bool is_csv = is_timing_table(system);
-  if (!is_csv && system.timing.empty()) return times_of_json(text, file);
   std::vector<ModuleCost> costs;
-  for (const auto& [module, ms] :
-       is_csv ? times_of_csv(system, text, file) : times_of_lines(system, text, file))
-    costs.push_back(cost_of_calls(module, "call", ms));
+  const bool is_csv = is_timing_table(system);
+  if (!is_csv && system.timing.empty()) {
+    costs = times_of_json(text, file);
+  } else {
+    for (const auto& [module, ms] :
+         is_csv ? times_of_csv(system, text, file) : times_of_lines(system, text, file))
+      costs.push_back(cost_of_calls(module, "call", ms));
+  }
+  std::erase_if(costs, [](const ModuleCost& cost) { return cost.calls == 0; });
   return costs;
 }
 

@@ -26,7 +26,8 @@ namespace stillpoint::bench {
 /// Times of the last two are in `timing_unit`.
 /// @param work output folder of the run
 /// @param process for its messages
-/// @return empty if the description has neither `timings` nor [timing]
+/// @return without modules that were never called, whose time is not 0; empty if the description has neither
+/// `timings` nor [timing]
 /// @throws InputError if the file cannot be read, is in another format, a module of [timing] is not in it, or
 /// a time is no finite number of at least 0
 [[nodiscard]] std::vector<ModuleCost> read_module_times(const ExternalSystem& system,
