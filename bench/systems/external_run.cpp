@@ -14,6 +14,7 @@
 #include "bench/record/result_values.h"
 #include "bench/record/run_environment.h"
 #include "bench/run/run_result.h"
+#include "bench/systems/cached_export.h"
 #include "bench/systems/module_times.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
@@ -46,6 +47,24 @@ bool is_changed(const RunRequest& request) {
   return request.max_frames > 0 || request.start_s > 0.0 || !request.fault.empty();
 }
 
+std::string name_of(ExportLayout layout) {
+  for (const auto& [value, name] : enum_names(layout)) {
+    if (value == layout) return std::string(name);
+  }
+  return "";
+}
+
+bool is_bag(ExportLayout layout) { return layout == ExportLayout::kBag || layout == ExportLayout::kMcap; }
+
+/// Where the sequence is exported to in a layout.
+fs::path export_path(const RunRequest& request, ExportLayout layout) {
+  const std::string start = request.start_s > 0.0 ? fmt::format("-from-{:.6f}", request.start_s) : "";
+  const fs::path folder =
+      datasets::cache_folder() / "exports" / (request.identity.sequence_id + "-" + name_of(layout) + start);
+  const std::string name = request.sequence.filename().string();
+  return folder / (is_bag(layout) ? name + "." + name_of(layout) : name);
+}
+
 /// Folder or bag of the sequence in a layout. The identity of the run contains its fault and its frame limit.
 fs::path exported(const RunRequest& request, ExportLayout layout) {
   if (layout == ExportLayout::kAsIs) {
@@ -54,27 +73,19 @@ fs::path exported(const RunRequest& request, ExportLayout layout) {
                      "\"as_is\" passes the recorded files, which have no fault, later start or frame "
                      "limit; use layout = \"tum\" or \"euroc\"");
   }
-  std::string format;
-  for (const auto& [value, name] : enum_names(layout)) {
-    if (value == layout) format = name;
-  }
-  const std::string start = request.start_s > 0.0 ? fmt::format("-from-{:.6f}", request.start_s) : "";
-  const fs::path folder =
-      datasets::cache_folder() / "exports" / (request.identity.sequence_id + "-" + format + start);
-  const std::string name = request.sequence.filename().string();
-  const bool is_bag = layout == ExportLayout::kBag || layout == ExportLayout::kMcap;
-  fs::path path = folder / (is_bag ? name + "." + format : name);
-  if (fs::exists(path)) return path;
+  const fs::path path = export_path(request, layout);
+  if (export_state(path) == ExportState::kIntact) return path;
   auto stream = datasets::first_frames(started(request), static_cast<std::size_t>(request.max_frames));
-  if (stream->info().format == format && !is_changed(request)) return request.sequence;
-  stream = datasets::with_faults(std::move(stream), faults_of(request));
-  if (is_bag) {
-    fs::create_directories(folder);
-    datasets::export_bag(*stream, path);
-  } else {
-    layout == ExportLayout::kTum ? datasets::export_tum(*stream, path)
-                                 : datasets::export_euroc(*stream, path);
-  }
+  if (stream->info().format == name_of(layout) && !is_changed(request)) return request.sequence;
+  require_export(path, [&] {
+    stream = datasets::with_faults(std::move(stream), faults_of(request));
+    if (is_bag(layout)) {
+      datasets::export_bag(*stream, path);
+    } else {
+      layout == ExportLayout::kTum ? datasets::export_tum(*stream, path)
+                                   : datasets::export_euroc(*stream, path);
+    }
+  });
   return path;
 }
 
@@ -334,9 +345,17 @@ std::string ExternalRun::manifest(const RunRequest& request) const {
 }
 
 RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& process) const {
+  const bool is_exported = system_.layout != ExportLayout::kAsIs;
+  if ((is_exported && export_state(export_path(request, system_.layout)) == ExportState::kChanged) ||
+      export_state(request.sequence) == ExportState::kChanged)
+    return failed(
+        Outcome::kBadData,
+        "files of the sequence were changed during the run; let programs write to {out} only, not to "
+        "{sequence}, which other runs read");
   if (process.exit_code != 0) {
-    return failed(Outcome::kCrashed, "exited with code " + std::to_string(process.exit_code) + ": " +
-                                         last_line(process.messages));
+    const std::string last = last_line(process.messages);
+    return failed(Outcome::kCrashed,
+                  fmt::format("exited with code {}{}{}", process.exit_code, last.empty() ? "" : ": ", last));
   }
   if (!fs::exists(request.work / system_.trajectory))
     return failed(Outcome::kLost, "wrote no " + system_.trajectory);

@@ -144,7 +144,10 @@ SourceBuild SourceBuilds::build(const SourceCommit& commit) const {
   const fs::path log = folder_ / (commit.hash + ".log");
   eval::write_text_file(log, result.messages);
   if (result.exit_code != 0 || result.signal != 0) {
-    build.failure = fmt::format("the build failed: {}; see {}", last_line(result.messages), log.string());
+    const std::string last = last_line(result.messages);
+    const std::string end = result.signal != 0 ? fmt::format("signal {}", result.signal)
+                                               : fmt::format("exit status {}", result.exit_code);
+    build.failure = fmt::format("the build failed: {}; see {}", last.empty() ? end : last, log.string());
   } else if (!fs::is_regular_file(build.program)) {
     build.failure = "the build wrote no " + source_.binary + "; correct source.binary; see " + log.string();
   } else {

@@ -15,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/process/child_process.h"
+#include "bench/systems/cached_export.h"
 #include "bench/systems/external_run.h"
 #include "bench/systems/module_times.h"
 #include "core/base/error.h"
@@ -71,10 +72,10 @@ RunRequest smoke_run(const ExternalSystem& system, const fs::path& work) {
   request.identity.sequence = "smoke";
   request.identity.sequence_id = "smoke-" + synth::request_key(scene);
   request.sequence = datasets::cache_folder() / "exports" / request.identity.sequence_id / "smoke";
-  if (!fs::exists(request.sequence)) {
+  require_export(request.sequence, [&] {
     const TurnedBody stream(datasets::open_sequence(synth::cached_sequence(scene)));
     datasets::export_tum(stream, request.sequence);
-  }
+  });
   request.work = work;
   return request;
 }

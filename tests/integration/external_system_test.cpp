@@ -191,6 +191,24 @@ TEST(ExternalSystem, IsExecutedWithAFault) {
   EXPECT_EQ(sizes.size(), 2u);
 }
 
+TEST(ExternalSystem, AChangeOfTheSequenceIsAnErrorAndReachesNoLaterRun) {
+  const TemporaryFolder folder;
+  folder.write("harmful.toml", "name = \"harmful\"\ncommand = [\"sh\", \"-c\", \"'" + std::string(kReplay) +
+                                   "' --error 0.01 run '{sequence}' --out '{out}' && "
+                                   "rm '{sequence}/imu.txt'\"]\n");
+  EXPECT_EQ(bench_system(folder, "harmful.toml").exit_code, 1);
+  EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kBadData);
+  EXPECT_NE(run_of(folder).detail.find("files of the sequence were changed"), std::string::npos)
+      << run_of(folder).detail;
+  write_replay(folder, "replay", "0.01");
+  EXPECT_EQ(bench_system(folder, "replay.toml").exit_code, 0);
+  std::size_t inertial = 0;
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(folder.path() / "cache" / "exports"))
+    inertial += entry.path().filename() == "imu.txt" ? 1 : 0;
+  EXPECT_EQ(inertial, 1u);
+}
+
 TEST(ExternalSystem, IsExecutedOnTheFirstFrames) {
   const TemporaryFolder folder;
   write_replay(folder, "replay", "0.001");

@@ -117,6 +117,17 @@ TEST(SystemsCheck, AcceptsTheConventionsThatADescriptionStates) {
   EXPECT_EQ(FakeSystem(replay("scale"), "scale = \"unknown\"\n").check().exit_code, 0);
 }
 
+TEST(SystemsCheck, AChangedSequenceIsExportedAnew) {
+  const TemporaryFolder cache;
+  const std::vector<std::string> environment = {"XDG_CACHE_HOME=" + cache.path().string()};
+  const FakeSystem harmful(replay("good") + "sed -i '20,$d' \"$1/rgb.txt\"\nrm \"$1/imu.txt\"\n");
+  expect_finding(harmful.check({}, environment),
+                 {"wrote outside of its folder", "rgb.txt", "write to {out} only"});
+  const ProgramResult result =
+      FakeSystem("test -e \"$1/imu.txt\" || exit 1\n" + replay("good")).check({}, environment);
+  EXPECT_TRUE(result.out.starts_with("fake: ok: 90 poses for 90 images")) << result.out;
+}
+
 TEST(SystemsCheck, NamesAProgramThatIsNotFound) {
   const FakeSystem fake("");
   fake.folder.write("sys/fake.toml", "name = \"fake\"\ncommand = [\"./no_such\"]\n");

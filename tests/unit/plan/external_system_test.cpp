@@ -197,6 +197,8 @@ TEST(ExternalRun, MessagesOfAFailureAreText) {
   process.messages = "loading\n10 %\rnot found: \xFC\n";  // Latin-1
   const RunOutcome outcome = run.outcome(request, process);
   EXPECT_EQ(outcome.detail, "exited with code 3: 10 % not found: \\xfc");
+  process.messages.clear();
+  EXPECT_EQ(run.outcome(request, process).detail, "exited with code 3");
 }
 
 TEST(ExternalDescription, NamesTheFormatsOfACalibration) {
@@ -238,6 +240,7 @@ TEST(ExternalTimes, OfJsonAreListsOrStatistics) {
   EXPECT_EQ(costs[0].max_ms, 6.0);
   EXPECT_EQ(costs[1].module + " per " + costs[1].per, "all per frame");
   EXPECT_EQ(costs[1].mean_ms, 3.5);
+  EXPECT_EQ(module_times(keys, "t.json", R"({"modules": {"track": [1], "loop": []}})").size(), 1u);
   expect_bad_times(keys, "t.json", R"({"modules": {"track": {"mean": 3, "calls": 1}}})",
                    {"t.json: modules.track", "\"median\"", "a list of milliseconds"});
   expect_bad_times(keys, "t.json", R"({"modules": {"track": [1, "2"]}})",
@@ -258,6 +261,7 @@ TEST(ExternalTimes, OfCsvAreColumns) {
   EXPECT_EQ(costs[0].calls, 1);
   EXPECT_EQ(costs[1].module, "track");
   EXPECT_EQ(costs[1].mean_ms, 2.0);
+  EXPECT_TRUE(module_times(keys, "t.csv", "frame,track_ms\n").empty());
   const std::string table = keys + "timing_unit = \"s\"\n[timing]\nupdate = \"msckf update\"\n";
   const std::vector<ModuleCost> of_seconds =
       module_times(table, "t.csv", "# timestamp (sec),tracking,msckf update\n1.0,0.1,0.002\n");
