@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 
+#include <fmt/format.h>
+
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -138,8 +140,9 @@ void require_safe_output(const fs::path& file, const OutputRules& rules) {
   if (!has_content(file)) return;
   if (!begins_with(file, rules.beginning))
     throw InputError(file.string(), "exists and is a file of another kind; remove it or choose another name");
-  if (!rules.force)
-    throw InputError(file.string(), "already exists; replace it with --force or choose another name");
+  if (!rules.force.value_or(false))
+    throw InputError(file.string(), fmt::format("already exists; {} or choose another name",
+                                                rules.force ? "replace it with --force" : "remove it"));
 }
 
 void write_output(const fs::path& file, const std::string& text, const OutputRules& rules) {

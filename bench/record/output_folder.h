@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ void write_files(const std::filesystem::path& folder, const std::vector<OutputFi
 /// What a single output file may replace.
 struct OutputRules {
   std::vector<std::filesystem::path> inputs;  ///< files and folders that the command reads; empty: ignored
-  bool force = false;                         ///< --force: replace an existing file of the same kind
-  std::string beginning;                      ///< of each file of this kind, e.g. "<svg"
+  std::optional<bool> force{};  ///< --force, if there is one: replace an existing file of the kind
+  std::string beginning;        ///< of each file of this kind, e.g. "<svg"
 };
 
 /// Checks an output file before the work begins. A file that does not exist or is empty passes; an existing

@@ -59,7 +59,9 @@ int check_system(const SystemCheckArguments& arguments) {
 int create(const std::string& name, const std::string& out) {
   const std::string stem = name.ends_with(".toml") ? name.substr(0, name.size() - 5) : name;
   const fs::path file = out.empty() ? fs::path(stem + ".toml") : fs::path(out);
-  write_output(file, description_template(fs::path(stem).filename().string()), {.inputs = {}});
+  const std::string text = description_template(fs::path(stem).filename().string());
+  static_cast<void>(parse_external_system(text, file.string()));  // the name may be one that none can have
+  write_output(file, text, {.inputs = {}});
   std::cout << fmt::format("wrote {}; edit it, then: stillpoint systems check {}\n", file.string(),
                            file.string());
   return kExitOk;

@@ -88,7 +88,7 @@ CalibrationSwitches switches_of(const CalibrateArguments& arguments) {
 }
 
 OutputRules rules_of(const CalibrateArguments& arguments) {
-  return {.inputs = {arguments.rig, arguments.truth}, .force = false, .beginning = {}};
+  return {.inputs = {arguments.rig, arguments.truth}, .beginning = {}};
 }
 
 /// @param raw_depth without registration of depth images to the color camera

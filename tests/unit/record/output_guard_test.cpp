@@ -32,8 +32,11 @@ TEST(OutputGuard, WritesANewFileAndFillsAnEmptyOne) {
 TEST(OutputGuard, ReplacesAFileOfTheSameKindOnlyWithForce) {
   const TemporaryFolder folder;
   const fs::path file = folder.write("a.svg", "<svg>old");
-  expect_input_error([&] { write_output(file, "<svg>new", {.beginning = "<svg"}); },
+  expect_input_error([&] { write_output(file, "<svg>new", {.force = false, .beginning = "<svg"}); },
                      {"a.svg: already exists", "--force"});
+  // Of a command without that option.
+  expect_input_error([&] { write_output(file, "<svg>new", {.beginning = "<svg"}); },
+                     {"a.svg: already exists; remove it or choose another name"});
   EXPECT_EQ(text_of(file), "<svg>old");
   write_output(file, "<svg>new", {.force = true, .beginning = "<svg"});
   EXPECT_EQ(text_of(file), "<svg>new");
