@@ -12,6 +12,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -202,6 +203,22 @@ void require_readable_textures(const fs::path& file) {
                                                 textures));
 }
 
+/// @throws InputError if a face names a vertex that the mesh lacks, which would be read out of bounds
+void require_vertices_of_faces(const fs::path& file, const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const std::span corners(mesh.mFaces[f].mIndices, mesh.mFaces[f].mNumIndices);
+      const auto wrong =
+          std::ranges::find_if(corners, [&](unsigned index) { return index >= mesh.mNumVertices; });
+      if (wrong == corners.end()) continue;
+      throw InputError(file.string(),
+                       fmt::format("face {} names vertex {} of {}, counted from 0; repair the mesh", f,
+                                   *wrong, mesh.mNumVertices));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<fs::path> companions_of_mesh(const fs::path& file) {
@@ -226,8 +243,12 @@ void read_mesh(const fs::path& file, World& world, std::size_t max_texels) {
   if (!fs::is_regular_file(file)) throw InputError(file.string(), "no such file; check the path of --mesh");
   require_readable_textures(file);
   Assimp::Importer importer;
-  const aiScene* const scene = importer.ReadFile(
-      file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  if (scene != nullptr) {
+    require_vertices_of_faces(file, *scene);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
+                                         aiProcess_PreTransformVertices);
+  }
   if (scene == nullptr) {
     throw InputError(file.string(),
                      std::string("cannot be read as a mesh: ") + importer.GetErrorString() +

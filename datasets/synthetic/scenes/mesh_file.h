@@ -17,8 +17,9 @@ inline constexpr std::size_t kMaxTexels = std::size_t{1} << 29;
 /// one, their texture, whose image lies beside the file. Textures are added to those of `world`: their sides
 /// become powers of two up to 8192 px, they repeat, and transparency is ignored.
 /// @throws InputError if the file is not PLY or OBJ, cannot be read, or contains no triangles (a point
-/// cloud), numbers that are not finite, triangles with neither color nor texture, or texture coordinates per
-/// face or several textures of a PLY; if a texture cannot be read, or they have more than `max_texels`
+/// cloud), faces of vertices that it lacks, numbers that are not finite, triangles with neither color nor
+/// texture, or texture coordinates per face or several textures of a PLY; if a texture cannot be read, or
+/// they have more than `max_texels`
 void read_mesh(const std::filesystem::path& file, World& world, std::size_t max_texels = kMaxTexels);
 
 /// The files of materials and textures that a mesh names, as far as they exist; their contents change what is

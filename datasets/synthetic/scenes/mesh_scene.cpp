@@ -79,6 +79,24 @@ double free_distance(const RayTracer& tracer, const Vector3d& from, const Vector
   return packet.primitive[0] < 0 ? most_m : static_cast<double>(packet.far[0]);
 }
 
+/// @throws InputError if no camera of the path sees a surface along rays over a view of 90 degrees
+void require_visible(const std::filesystem::path& file, const RayTracer& tracer, std::span<const Pose> path) {
+  constexpr int kRays = 65;  // per row and column: 1.4 degrees apart
+  constexpr double kAnyDistance_m = 1e4;
+  const auto sees = [&](const Pose& T_w_c) {
+    for (int ray = 0; ray < kRays * kRays; ++ray) {
+      const Vector3d direction_c(2.0 * (ray % kRays) / (kRays - 1) - 1.0,
+                                 2.0 * (ray / kRays) / (kRays - 1) - 1.0, 1.0);
+      if (free_distance(tracer, T_w_c.p, T_w_c.q * direction_c, kAnyDistance_m) < kAnyDistance_m) return true;
+    }
+    return false;
+  };
+  if (std::ranges::any_of(path, sees)) return;
+  throw InputError(file.string(),
+                   "is not in view of the camera at any time; check the order of the quaternions and the "
+                   "frame of the path, and that the faces have an area");
+}
+
 /// Height of the floor: the median of what is below the camera or, where most of that is missing, that below
 /// which a hundredth of the vertices is.
 double floor_height(const StaticMesh& mesh, const RayTracer& tracer, std::span<const Pose> path) {
@@ -133,6 +151,7 @@ Scene build_mesh_scene(const std::filesystem::path& file, std::span<const Pose> 
   Vector3d center = Vector3d::Zero();
   for (const Pose& T_w_c : path) center += T_w_c.p / static_cast<double>(path.size());
   const RayTracer tracer(scene.world);
+  require_visible(file, tracer, path);
   scene.floor_m = floor_height(scene.world.mesh, tracer, path);
   scene.world.lamps.push_back({.center = {static_cast<float>(center.x()), static_cast<float>(center.y()),
                                           static_cast<float>(scene.floor_m + kLampHeight_m)},

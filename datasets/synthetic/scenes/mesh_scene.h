@@ -16,7 +16,7 @@ namespace stillpoint::synth {
 /// @param file see `read_mesh`
 /// @param path camera poses T_w_c in the frame of the mesh, not empty
 /// @throws InputError as `read_mesh`; if the mesh is larger than 1 km, that is, hardly in meters; if the
-/// camera is far from it, or mostly upside down or on its side
+/// camera is far from it, mostly upside down or on its side, or never sees it
 [[nodiscard]] Scene build_mesh_scene(const std::filesystem::path& file, std::span<const Pose> path);
 
 }  // namespace stillpoint::synth

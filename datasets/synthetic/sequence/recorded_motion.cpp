@@ -254,10 +254,29 @@ double knot_interval_s(const SynthRequest& request, std::vector<double> interval
     throw InputError(
         request.trajectory_file.string(),
         fmt::format("has no pose for {:.2f} s, and one every {:.3f} s elsewhere; choose a part without "
-                    "gaps with --start and --seconds",
-                    longest_s, *middle));
+                    "gaps with --start and --seconds, or give poses at least every {:.2g} s",
+                    longest_s, *middle, gap_s));
   }
   return is_mesh(request) ? std::max(kHandKnot_s, kPosesPerKnot * longest_s) : kHandKnot_s;
+}
+
+/// @throws InputError if the camera in a mesh moves beyond the range of inertial sensors, as where its poses
+/// jump
+void require_measurable(const SynthRequest& request, const HandRecording& recording, double from_s,
+                        double to_s) {
+  constexpr double kStep_s = 0.005;
+  constexpr double kMost_mps2 = 157.0, kMost_radps = 17.5;  // 16 g and 1000 deg/s
+  if (!is_mesh(request)) return;
+  for (double t_s = from_s; t_s <= to_s; t_s += kStep_s) {
+    const BodyMotion motion = recording.body_path.at(t_s);
+    const double acceleration = motion.acceleration_w.norm(), rate = motion.rate_b.norm();
+    if (acceleration <= kMost_mps2 && rate <= kMost_radps) continue;
+    throw InputError(
+        request.trajectory_file.string(),
+        fmt::format("jumps near {} s: an acceleration of {:.0f} m/s^2 and a rate of {:.0f} rad/s; "
+                    "choose a part without jumps with --start and --seconds",
+                    eval::format_stamp(after(recording.epoch, t_s)), acceleration, rate));
+  }
 }
 
 /// Sets the mean position and direction of the camera.
@@ -295,6 +314,7 @@ HandRecording load_hand_recording(const SynthRequest& request, const PathRequest
   const SmootherConfig poses_only{.knot_interval_s = knot_interval_s(request, intervals_s(poses, from, to))};
   HandRecording recording{smooth_motion({poses, {}, epoch, from_s, to_s}, poses_only).path};
   recording.epoch = epoch;
+  require_measurable(request, recording, from_s, to_s);
   describe_view(truth, recording);
   return recording;
 }

@@ -54,7 +54,7 @@ struct HandRecording {
 /// @param request with its trajectory, and frame times if there are recorded ones
 /// @param path    pose of the camera in the body frame; interval of the result
 /// @throws InputError if a file cannot be read, does not cover the interval, or has a gap in it: 0.5 s; for
-/// `mesh` three times the median interval, at least 0.1 s
+/// `mesh` three times the median interval, at least 0.1 s, or a jump: more than 16 g or 1000 deg/s
 [[nodiscard]] HandRecording load_hand_recording(const SynthRequest& request, const PathRequest& path,
                                                 double first_frame_s);
 

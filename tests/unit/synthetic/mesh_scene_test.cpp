@@ -172,6 +172,13 @@ TEST(MeshFile, WhatCannotBeRenderedIsNamed) {
                       header + "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar "
                                "float texcoord\nend_header\n"),
          {"seam.ply", "per face", "OBJ"});
+  // Read out of bounds before.
+  for (const std::string vertex : {"3", "900000000"})
+    expect(folder.write("far.ply", header +
+                                       "element face 1\nproperty list uchar int vertex_indices\n"
+                                       "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 " +
+                                       vertex + "\n"),
+           {"far.ply", "face 0 names vertex " + vertex + " of 3", "repair"});
   folder.write("lost.mtl", "newmtl wall\nmap_Kd none.png\n");
   expect(folder.write("lost.obj",
                       "mtllib lost.mtl\nv 2 1 -1\nv 2 -1 -1\nv 2 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\n"
@@ -210,7 +217,10 @@ TEST(MeshScene, ThePathMustBeThatOfALevelCameraInTheMesh) {
   expect_input_error(build({camera_attitude(0.0, 0.0, 0.0), {40.0, 0.0, 1.0}}),
                      {"37 m", "frame of the mesh"});
   expect_input_error(build({camera_attitude(0.0, 0.0, 3.1), {0.0, 0.0, 1.0}}), {"upside down", "transform"});
-  EXPECT_NO_THROW(build({camera_attitude(0.0, 1.4, 0.0), {0.0, 0.0, 1.0}})());  // looks down
+  EXPECT_NO_THROW(build({camera_attitude(0.0, 1.4, 0.0), {0.0, 0.0, 1.0}})());   // looks down
+  EXPECT_NO_THROW(build({camera_attitude(0.0, 0.0, 0.0), {-4.0, 0.0, 1.0}})());  // from outside
+  expect_input_error(build({camera_attitude(3.1, 0.0, 0.0), {-4.0, 0.0, 1.0}}),
+                     {"room.ply", "not in view", "quaternions"});
 }
 
 TEST(MeshScene, PeopleWalkOnItsFloorWhereThereIsSpace) {
@@ -304,6 +314,28 @@ TEST(MeshScene, ThePathMayBeAtALowRateButNotHaveGaps) {
     request.trajectory_file = folder.write("gap.txt", text);
     expect_input_error([&] { static_cast<void>(make_scene_setup(request)); },
                        {"gap.txt", "no pose", "--start"});
+  }
+}
+
+TEST(MeshScene, ThePathMustNotJump) {
+  const TemporaryFolder folder;
+  SynthRequest request = mesh_request(folder, 0.0);
+  request.seconds = 2.0;
+  const auto path = [&](double turn_rad) {
+    std::string text;
+    for (int i = 0; i <= 180; ++i) {
+      const bool is_after = i > 60;
+      const Eigen::Quaterniond q = camera_attitude(is_after ? turn_rad : 0.0, 0.0, 0.0);
+      text += fmt::format("{:.4f} -1.5 {:.4f} 1.5 {} {} {} {}\n", 50.0 + i / 30.0,
+                          i / 150.0 - 0.6 + (is_after && turn_rad == 0.0 ? 0.5 : 0.0), q.x(), q.y(), q.z(),
+                          q.w());
+    }
+    return folder.write("jump.txt", text);
+  };
+  for (const double turn_rad : {0.0, 2.5}) {
+    request.trajectory_file = path(turn_rad);
+    expect_input_error([&] { static_cast<void>(make_scene_setup(request)); },
+                       {"jump.txt", "jumps near 5", "--start"});
   }
 }
 
