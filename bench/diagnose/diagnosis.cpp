@@ -74,8 +74,8 @@ class Diagnoser {
     rank_others(diagnosis_.others, effective_ratio());
     diagnosis_.frames = request_.part.count;
     diagnosis_.seconds = part_s();
-    const auto waiting = std::ranges::count_if(diagnosis_.others, [](const Cause& cause) {
-      return cause.correction.has_value() && !cause.error_ratio;
+    const auto waiting = std::ranges::count_if(diagnosis_.others, [this](const Cause& cause) {
+      return cause.correction.has_value() && !cause.error_ratio && !is_circular(cause);
     });
     if (spent_ && waiting > 0) leave_out(fmt::format("the effects of {} candidate(s)", waiting));
     diagnosis_.interrupted = stopped();
@@ -228,13 +228,18 @@ class Diagnoser {
     return keep_best(std::move(found));
   }
 
+  /// The inconsistency is relative to the stated noise: stating more of it reduces it, whatever the noise is.
+  [[nodiscard]] bool is_circular(const Cause& cause) const {
+    return request_.measure == ErrorMeasure::kInconsistency && cause.id == "imu_noise";
+  }
+
   void measure(Cause& cause, const Trial& baseline) {
     if (!cause.correction) {
       cause.error_ratio = error_ratio_outside(baseline.result, request_.measure, cause.times);
       cause.consistent = cause.error_ratio && is_exceptional(cause, baseline.result);
       return;
     }
-    if (options_.foreign) return;
+    if (options_.foreign || is_circular(cause)) return;
     std::vector<Correction> corrections = kept_;
     corrections.push_back(*cause.correction);
     const std::optional<Trial> trial = affords(1.0) ? trial_with(corrections) : std::nullopt;

@@ -45,6 +45,21 @@ TEST(DiagnoseCommand, NamesDepthOfAWrongScaleFirst) {
   EXPECT_EQ(first_cause(result), "depth_scale") << result.out;
 }
 
+// The inconsistency is relative to the stated noise, so that stating more reduces it in any case.
+TEST(DiagnoseCommand, DoesNotMeasureNoiseByTheInconsistency) {
+  const TemporaryFolder folder;
+  const fs::path copy = copy_of_rendered_sequence(folder);
+  fs::remove(copy / "groundtruth.txt");
+  const ProgramResult result = diagnosis_of(copy, {"--json", "--fault", "imu_noise:amount=5"});
+  const nlohmann::json document = nlohmann::json::parse(result.out);
+  EXPECT_EQ(document["measure"], "inconsistency");
+  for (const nlohmann::json& cause : document["causes"]) EXPECT_NE(cause["id"], "imu_noise") << result.out;
+  bool is_listed = false;
+  for (const nlohmann::json& cause : document["others"])
+    is_listed = is_listed || (cause["id"] == "imu_noise" && cause["error_ratio"].is_null());
+  EXPECT_TRUE(is_listed) << result.out;
+}
+
 /// Multiplies the columns after the stamps.
 void scale_columns(const fs::path& file, double factor) {
   std::ifstream in(file);
