@@ -230,8 +230,10 @@ class RigLines {
     if (p.outcome == ParameterOutcome::kNotObserved && p.difference() == 0.0)
       return "not observed, as stated";
     const std::string unit = p.unit.empty() ? "" : " " + p.unit;
-    return fmt::format("{} +- {}{}, was {}", number_text(p.value, p.sigma), number_text(p.sigma, p.sigma),
-                       unit, number_text(p.stated, p.sigma));
+    return fmt::format(
+        "{}{} +- {}{}, was {}",
+        p.outcome == ParameterOutcome::kNotObserved ? "not observed, changed with the others: " : "",
+        number_text(p.value, p.sigma), number_text(p.sigma, p.sigma), unit, number_text(p.stated, p.sigma));
   }
 
   const CalibrationResult& result_;
