@@ -212,6 +212,18 @@ std::string csv_cell(const std::string& cell) {
   return quoted;
 }
 
+/// A bar of a name would end its cell; those of `escape_markdown` are escaped.
+TableRows with_escaped_bars(TableRows rows) {
+  for (std::vector<std::string>& row : rows) {
+    for (std::string& cell : row) {
+      for (std::size_t bar = cell.find('|'); bar != std::string::npos; bar = cell.find('|', bar + 1)) {
+        if (bar == 0 || cell[bar - 1] != '\\') cell.insert(bar++, 1, '\\');
+      }
+    }
+  }
+  return rows;
+}
+
 std::vector<std::size_t> widths_of(const TableRows& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 3);  // the Markdown delimiter row needs three dashes
   for (const std::vector<std::string>& row : rows) {
@@ -222,9 +234,10 @@ std::vector<std::size_t> widths_of(const TableRows& rows) {
 
 }  // namespace
 
-std::string format_table(const TableRows& rows, TableStyle style) {
+std::string format_table(const TableRows& cells, TableStyle style) {
   std::string text;
-  if (rows.empty()) return text;
+  if (cells.empty()) return text;
+  const TableRows rows = style == TableStyle::kMarkdown ? with_escaped_bars(cells) : cells;
   const std::vector<std::size_t> widths = widths_of(rows);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (style == TableStyle::kMarkdown) text += "| ";

@@ -46,7 +46,7 @@ enum class TableStyle { kText, kMarkdown, kCsv };
 /// The first row is the header. All rows have the same number of cells.
 using TableRows = std::vector<std::vector<std::string>>;
 
-[[nodiscard]] std::string format_table(const TableRows& rows, TableStyle style);
+[[nodiscard]] std::string format_table(const TableRows& cells, TableStyle style);
 
 /// A file of reports/web, embedded in the binary: template, style sheet, script, library or license.
 /// @param name relative to reports/web, e.g. "page.css"; must be listed in reports/CMakeLists.txt

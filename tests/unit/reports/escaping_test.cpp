@@ -25,6 +25,13 @@ TEST(Escaping, KeepsMarkdownTablesIntact) {
   EXPECT_EQ(escape_markdown("a|b\n*c*<d>"), "a\\|b \\*c\\*\\<d\\>");
 }
 
+TEST(Escaping, BarsOfNamesDoNotEndCellsOfMarkdown) {
+  EXPECT_EQ(
+      format_table({{"name", "n"}, {"a|b", "1"}, {escape_markdown("c|d|"), "||"}}, TableStyle::kMarkdown),
+      "| name   | n |\n|--------|------|\n| a\\|b   | 1 |\n| c\\|d\\| | \\|\\| |\n");
+  EXPECT_EQ(format_table({{"a|b", "n"}}, TableStyle::kText), "a|b  n\n");
+}
+
 TEST(Escaping, QuotesCsvFieldsAndNeutralizesFormulas) {
   EXPECT_EQ(csv_field("plain"), "plain");
   EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
