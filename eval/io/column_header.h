@@ -50,7 +50,9 @@ struct TimeColumns {
 [[nodiscard]] std::optional<TimeColumns> time_columns(const TableHeader& header);
 
 /// The stamp of a row.
-/// @param unit of a stamp in one column
+/// @param row     of the table
+/// @param columns where its stamps are
+/// @param unit    of a stamp in one column
 /// @throws InputError with file and line as `TextRow::time`; if the seconds are not whole, or the rest is a
 /// second or more
 [[nodiscard]] Timestamp stamp_of(const TextRow& row, const TimeColumns& columns, TimeUnit unit);
