@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What base has and head lacks: variants, sequences, metrics and modules. An infinite value or a missing one
-/// ("n/a") is worse than any number, but is in no rank test; it is counted here.
+/// What base has and head lacks: variants, sequences, runs, poses, metrics and modules. An infinite value or
+/// a missing one ("n/a") is worse than any number, but is in no rank test; it is counted here.
 ///
 /// Whether head lacks something that base has more often than the reverse, over n pairs of runs of which f
 /// lack it at head only and s at base only:

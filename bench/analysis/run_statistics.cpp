@@ -99,21 +99,16 @@ SubjectTable subjects_of(std::span<const StoredRun> runs, const std::string& var
   return table;
 }
 
-/// Coverages of a pair.
-struct CoveragePair {
-  double base = 1.0;
-  double changed = 1.0;
-  [[nodiscard]] double gap() const { return std::abs(base - changed); }
-};
+double gap(const eval::Pair& coverages) { return std::abs(coverages.base - coverages.changed); }
 
-CoveragePair wider_gap(const CoveragePair& a, const CoveragePair& b) { return b.gap() > a.gap() ? b : a; }
+eval::Pair wider_gap(const eval::Pair& a, const eval::Pair& b) { return gap(b) > gap(a) ? b : a; }
 
 /// Of metrics that are small if most of the track is lost.
-std::string coverage_doubt(const CoveragePair& coverages, const std::string& metric) {
+std::string coverage_doubt(const eval::Pair& coverages, const std::string& metric) {
   const MetricDescriptor* known = find_metric(without_protocol(metric));
   const bool is_error = known != nullptr && known->source == MetricSource::kTrajectory &&
                         known->direction == MetricDirection::kSmallerIsBetter;
-  if (!is_error || coverages.gap() <= kMaxCoverageGap) return "";
+  if (!is_error || gap(coverages) <= kMaxCoverageGap) return "";
   return fmt::format("coverage {:.2f}, base {:.2f}: not comparable", coverages.changed, coverages.base);
 }
 
@@ -158,7 +153,7 @@ class SequencePairs {
   }
 
   std::vector<eval::Pair> pairs{};
-  CoveragePair coverages;  ///< of the pair in which they differ most
+  eval::Pair coverages;  ///< of the pair in which they differ most
   std::size_t newly_failed = 0;
   std::size_t newly_without_value = 0;
   std::size_t copies = 0;
@@ -201,7 +196,7 @@ AblationRow row_of(const AblationRow& names, const SubjectTable& base, const Sub
                    const std::string& metric) {
   AblationRow row = names;
   const bool counts_once = is_deterministic(metric);
-  CoveragePair coverages;
+  eval::Pair coverages;
   std::map<std::string, SequencePairs> sequences;
   for (const auto& [subject, runs] : base) {
     const std::string& sequence = std::get<0>(subject);

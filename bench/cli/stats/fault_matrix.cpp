@@ -306,8 +306,7 @@ int stats_faults(const StatsArguments& arguments) {
   if (left_out > 0)
     output.notes.push_back(
         fmt::format("Left out: {} runs of other seeds or repetitions. Each cell is the first of its runs, "
-                    "totals and exit "
-                    "status are those of the cells.",
+                    "totals and exit status are those of the cells.",
                     left_out));
   print_stats(output, chosen);
   if (chosen.format == StatsFormat::kTable)
