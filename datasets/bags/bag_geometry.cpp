@@ -225,6 +225,25 @@ std::vector<NamedTransform> read_static_transforms(const BagFile& bag) {
   return transforms;
 }
 
+std::vector<NamedTransform> read_fixed_transforms(const BagFile& bag) {
+  std::vector<NamedTransform> transforms = read_static_transforms(bag);
+  const std::size_t of_static_topic = transforms.size();
+  for (const auto& [link, poses] : read_moving_transforms(bag)) {
+    const auto same_link = [&link](const NamedTransform& known) {
+      return known.parent == link.first && known.child == link.second;
+    };
+    const Pose& first = poses.front().T_w_f;
+    const auto is_first = [&first](const StampedPose& pose) {
+      return pose.T_w_f.p == first.p && pose.T_w_f.q.coeffs() == first.q.coeffs();
+    };
+    if (poses.size() > 1 && std::ranges::all_of(poses, is_first) &&
+        std::none_of(transforms.begin(), transforms.begin() + static_cast<std::ptrdiff_t>(of_static_topic),
+                     same_link))
+      transforms.push_back({.parent = link.first, .child = link.second, .T_parent_child = first});
+  }
+  return transforms;
+}
+
 eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string& topic) {
   eval::LoadedTrajectory loaded;
   if (topic.starts_with(kTransformsOfFrames)) {
@@ -307,6 +326,40 @@ std::optional<CameraInfoMessage> find_camera_info(const BagFile& bag, const std:
   return of_frame;
 }
 
+namespace {
+
+/// The camera of the images, from that of the full image: by the region of interest, then by the binning,
+/// which divides the principal point (image_geometry::PinholeCameraModel). A region that is not within the
+/// full image is that of a sensor of another size: `info` then describes the images themselves.
+Camera with_region(Camera camera, const CameraInfoMessage& info) {
+  const ImageRegion& region = info.region;
+  const bool is_part = region.width > 0 && region.height > 0 &&
+                       std::uint64_t{region.x} + region.width <= info.width &&
+                       std::uint64_t{region.y} + region.height <= info.height;
+  if (is_part) {
+    camera.width = static_cast<int>(region.width);
+    camera.height = static_cast<int>(region.height);
+    camera.cx -= region.x;
+    camera.cy -= region.y;
+  }
+  const auto bin = [](std::uint32_t binning, int& size, double& focal_length, double& center) {
+    if (binning < 2 || binning > static_cast<std::uint32_t>(size)) return;
+    size /= static_cast<int>(binning);
+    focal_length /= binning;
+    center /= binning;
+  };
+  bin(info.binning_x, camera.width, camera.fx, camera.cx);
+  bin(info.binning_y, camera.height, camera.fy, camera.cy);
+  return camera;
+}
+
+/// "/camera/image_rect_color", "/camera/rectified/image": a word that begins with "rect".
+bool has_rectified_images(const std::string& topic) {
+  return topic.find("_rect") != std::string::npos || topic.find("/rect") != std::string::npos;
+}
+
+}  // namespace
+
 Camera camera_of(const CameraInfoMessage& info, const std::string& image_topic, const std::string& place) {
   Camera camera{.width = static_cast<int>(info.width),
                 .height = static_cast<int>(info.height),
@@ -314,13 +367,15 @@ Camera camera_of(const CameraInfoMessage& info, const std::string& image_topic, 
                 .fy = info.K[4],
                 .cx = info.K[2],
                 .cy = info.K[5]};
-  if (image_topic.find("rect") != std::string::npos && info.P[0] > 0.0) {
+  const bool is_rectified = has_rectified_images(image_topic) && info.P[0] > 0.0;
+  if (is_rectified) {
     camera.fx = info.P[0];
     camera.fy = info.P[5];
     camera.cx = info.P[2];
     camera.cy = info.P[6];
-    return camera;
   }
+  camera = with_region(camera, info);
+  if (is_rectified) return camera;
   if (std::ranges::all_of(info.D, [](double coefficient) { return coefficient == 0.0; })) return camera;
   return with_lens(camera, {.name = info.distortion_model, .coefficients = info.D}, place);
 }

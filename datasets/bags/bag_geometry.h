@@ -49,6 +49,10 @@ struct BagTopic {
 /// The transforms of /tf_static, the last one of each pair of frames.
 [[nodiscard]] std::vector<NamedTransform> read_static_transforms(const BagFile& bag);
 
+/// These, and the transforms of /tf that never change, which static_transform_publisher of ROS 1 repeats
+/// there.
+[[nodiscard]] std::vector<NamedTransform> read_fixed_transforms(const BagFile& bag);
+
 /// The first camera info of an image topic: of the topic `camera_info` beside it, in recordings of
 /// librealsense of `info/camera_info`, else of any topic whose message has the frame of the images.
 /// @return nullopt without one, or if it is not calibrated (fx = 0)
@@ -56,9 +60,9 @@ struct BagTopic {
                                                                 const std::string& image_topic,
                                                                 const std::string& image_frame);
 
-/// The camera of an image topic. A topic with "rect" in its name has rectified images: focal lengths and
-/// principal point of P, without distortion. Others: K and D, with the models of `with_lens`, and any model
-/// whose coefficients are all 0.
+/// The camera of an image topic. A topic with a word of its name that begins with "rect" has rectified
+/// images: focal lengths and principal point of P, without distortion. Others: K and D, with the models of
+/// `with_lens`, and any model whose coefficients are all 0. Region of interest and binning are applied.
 /// @throws InputError if the distortion model is another one
 [[nodiscard]] Camera camera_of(const CameraInfoMessage& info, const std::string& image_topic,
                                const std::string& place);

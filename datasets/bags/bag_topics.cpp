@@ -44,8 +44,14 @@ const ColorLayout* find_layout(std::string_view encoding) {
   return found == kColorLayouts.end() ? nullptr : &*found;
 }
 
+/// Whether the pixels are Y and alternating U and V, in this order. The names of ROS 1, and of ROS 2 since
+/// Humble.
+bool has_luma_first(std::string_view encoding) { return encoding == "yuv422_yuy2" || encoding == "yuyv"; }
+
 /// Whether the pixels are Y and alternating U and V. ROS names the order U Y V Y "yuv422".
-bool is_yuv(std::string_view encoding) { return encoding.starts_with("yuv422"); }
+bool is_yuv(std::string_view encoding) {
+  return encoding.starts_with("yuv422") || encoding == "uyvy" || has_luma_first(encoding);
+}
 
 /// @throws InputError unless the rows of `bytes_per_pixel` fit in the data
 void require_pixels(const ImageMessage& image, std::uint64_t bytes_per_pixel, std::string_view place) {
@@ -72,7 +78,7 @@ cv::Vec3b rgb_of(int y, int u, int v) {
 
 cv::Mat decode_yuv(const ImageMessage& image, std::string_view place) {
   require_pixels(image, 2, place);
-  const std::size_t luma_first = image.encoding == "yuv422_yuy2" ? 0 : 1;
+  const std::size_t luma_first = has_luma_first(image.encoding) ? 0 : 1;
   const std::size_t chroma_first = 1 - luma_first;
   cv::Mat rgb(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC3);
   for (int row = 0; row < rgb.rows; ++row) {
@@ -109,6 +115,16 @@ cv::Mat depth_values(const ImageMessage& image, int type, std::string_view place
   return depth;
 }
 
+/// @param beginning of a message with an image: its PNG may begin anywhere in it
+bool is_gray_png_of_16_bits(std::string_view beginning) {
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  constexpr std::string_view kGrayOf16Bits("\x10\0", 2);  // bit depth and color type
+  constexpr std::size_t kBitDepthOffset = 24;
+  const std::size_t png = beginning.find(kSignature);
+  return png != std::string_view::npos && beginning.substr(png).size() >= kBitDepthOffset + 2 &&
+         beginning.substr(png + kBitDepthOffset, 2) == kGrayOf16Bits;
+}
+
 }  // namespace
 
 ImageContent content_of_encoding(std::string_view encoding) {
@@ -117,10 +133,10 @@ ImageContent content_of_encoding(std::string_view encoding) {
   return ImageContent::kOther;
 }
 
-ImageContent content_of_format(std::string_view format) {
-  return format.find("compressedDepth") != std::string_view::npos || format.starts_with("16UC1")
-             ? ImageContent::kDepth
-             : ImageContent::kColor;
+ImageContent content_of_compressed(std::string_view format, std::string_view beginning) {
+  const bool is_depth = format.find("compressedDepth") != std::string_view::npos ||
+                        format.starts_with("16UC1") || is_gray_png_of_16_bits(beginning);
+  return is_depth ? ImageContent::kDepth : ImageContent::kColor;
 }
 
 bool has_float_depth(std::string_view encoding_or_format) { return encoding_or_format.starts_with("32FC1"); }
@@ -226,7 +242,7 @@ TopicSummary with_encoding(TopicSummary summary, const BagFile& bag, const Messa
       summary.image = content_of_encoding(summary.encoding);
     } else if (summary.type == kCompressedImage) {
       summary.encoding = parse_compressed_image_head(message).format;
-      summary.image = content_of_format(summary.encoding);
+      summary.image = content_of_compressed(summary.encoding, bytes);
     }
   } catch (const InputError&) {  // kOther
   }
@@ -265,15 +281,18 @@ int depth_rank(const TopicSummary& topic) {
   return rank;
 }
 
-/// Whether a topic has depth by its encoding and name: infrared brightness has 16 bits, too (mono16, and
+bool is_infrared(const TopicSummary& topic) {
+  return contains_any(topic.topic, {"infra", "/ir/", "/ir_", "_ir/", "brightness", "amplitude"}) ||
+         lower_case(topic.topic).ends_with("/ir");
+}
+
+/// Whether a topic has depth by its encoding and name: infrared brightness has 16 bits, too (mono16, PNG, and
 /// 16UC1 by some cameras).
 bool measures_depth(const TopicSummary& topic) {
   if (topic.image != ImageContent::kDepth) return false;
-  const bool is_named = contains_any(topic.topic, {"depth"});
-  const bool is_infrared =
-      contains_any(topic.topic, {"infra", "/ir/", "/ir_", "_ir/", "brightness", "amplitude"}) ||
-      lower_case(topic.topic).ends_with("/ir");
-  return is_named || (topic.encoding != "mono16" && !is_infrared);
+  const bool states_depth = topic.encoding.starts_with("16UC1") || topic.encoding.starts_with("32FC1") ||
+                            topic.encoding.find("compressedDepth") != std::string::npos;
+  return contains_any(topic.topic, {"depth"}) || (states_depth && !is_infrared(topic));
 }
 
 /// The first of the best topics for which `is_candidate` is true; empty without one.
@@ -381,6 +400,13 @@ BagTopics select_topics(const BagFile& bag, std::span<const std::string> request
   selected.truth = best_topic(topics, names_reference, [](const TopicSummary&) { return 0; });
   selected = with_imu(selected, topics);
   for (const std::string& request : requested) selected = with_request(selected, request, topics);
+  const bool states_none = std::ranges::find(requested, "depth=") != requested.end();
+  if (selected.depth.empty() && !states_none) {
+    selected.unclear_depth = best_topic(
+        topics,
+        [](const TopicSummary& topic) { return topic.image == ImageContent::kDepth && !is_infrared(topic); },
+        depth_rank);
+  }
   if (selected.color.empty())
     throw InputError(bag.path().string(),
                      "contains no color or gray images; its topics are " + list_of(topics));

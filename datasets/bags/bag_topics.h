@@ -18,12 +18,14 @@ namespace stillpoint::datasets {
 enum class ImageContent { kColor, kDepth, kOther };
 
 /// What an image with this `encoding` of sensor_msgs/Image contains: mono8, rgb8, bgr8, rgba8, bgra8, 8UC1,
-/// 8UC3, 8UC4, yuv422 and yuv422_yuy2 are color or gray; 16UC1, mono16 and 32FC1 are depth.
+/// 8UC3, 8UC4, yuv422 (uyvy) and yuv422_yuy2 (yuyv) are color or gray; 16UC1, mono16 and 32FC1 are depth.
 [[nodiscard]] ImageContent content_of_encoding(std::string_view encoding);
 
-/// What an image with this `format` of sensor_msgs/CompressedImage contains: depth if it names
-/// compressedDepth.
-[[nodiscard]] ImageContent content_of_format(std::string_view format);
+/// What a sensor_msgs/CompressedImage contains: depth if `format` names compressedDepth or 16UC1, or if the
+/// image is a PNG of one channel of 16 bits.
+/// @param format of the message
+/// @param beginning of the message
+[[nodiscard]] ImageContent content_of_compressed(std::string_view format, std::string_view beginning);
 
 /// Units per meter of depth images with values in meters (32FC1) after their conversion to 16 bits, unless a
 /// rig.toml states others: the range is 13.1 m, as in the TUM benchmark.
@@ -48,10 +50,11 @@ inline constexpr double kFloatDepthUnitsPerM = 5000.0;
 struct BagTopics {
   std::string color;
   std::string depth;
-  std::string imu;    ///< both inertial sensors
-  std::string gyro;   ///< if they are in two topics
-  std::string accel;  ///< if they are in two topics
-  std::string truth;  ///< poses of a reference system
+  std::string imu;            ///< both inertial sensors
+  std::string gyro;           ///< if they are in two topics
+  std::string accel;          ///< if they are in two topics
+  std::string truth;          ///< poses of a reference system
+  std::string unclear_depth;  ///< without depth: an image of 16 bits that no name calls depth or infrared
 };
 
 /// Selects topics by type and name.

@@ -166,6 +166,12 @@ CameraInfoMessage parse_camera_info(const SerializedMessage& message) {
   info.K = fields.numbers<9>();
   static_cast<void>(fields.numbers<9>());  // R: rectification of stereo cameras
   info.P = fields.numbers<12>();
+  info.binning_x = fields.number<std::uint32_t>();
+  info.binning_y = fields.number<std::uint32_t>();
+  info.region = {.x = fields.number<std::uint32_t>(),
+                 .y = fields.number<std::uint32_t>(),
+                 .height = fields.number<std::uint32_t>(),
+                 .width = fields.number<std::uint32_t>()};
   return info;
 }
 

@@ -54,7 +54,16 @@ struct CompressedImageMessage {
   std::string_view data;
 };
 
-/// sensor_msgs/CameraInfo, without binning and region of interest, which do not change the calibration.
+/// sensor_msgs/RegionOfInterest [px]; of size 0: the whole image.
+struct ImageRegion {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+};
+
+/// sensor_msgs/CameraInfo: size, K and P are those of the full image, of which `region` is cut out and then
+/// binned.
 struct CameraInfoMessage {
   MessageHeader header;
   std::uint32_t height = 0;
@@ -63,6 +72,9 @@ struct CameraInfoMessage {
   std::vector<double> D;
   std::array<double, 9> K{};
   std::array<double, 12> P{};
+  std::uint32_t binning_x = 0;  ///< 0 and 1: none
+  std::uint32_t binning_y = 0;
+  ImageRegion region = {};
 };
 
 /// sensor_msgs/Imu, without orientation.
@@ -130,7 +142,7 @@ struct NavSatFixMessage {
 [[nodiscard]] std::string serialize(const ImageMessage& message, WireFormat format);
 [[nodiscard]] std::string serialize(const CompressedImageMessage& message, WireFormat format);
 
-/// R is the identity; binning and region of interest are 0.
+/// R is the identity; binning and region of interest are written as 0.
 [[nodiscard]] std::string serialize(const CameraInfoMessage& message, WireFormat format);
 
 /// The altitude has no covariance.

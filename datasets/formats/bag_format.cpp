@@ -301,7 +301,7 @@ struct BagFrames {
 
 BagFrames frames_of(const BagFile& bag, const BagTopics& topics, const BagStreams& streams,
                     const RealsenseStreams& realsense) {
-  BagFrames frames{.links = read_static_transforms(bag),
+  BagFrames frames{.links = read_fixed_transforms(bag),
                    .color = streams.color_frame,
                    .depth = streams.depth_frame,
                    .imu = streams.imu_frame};
@@ -315,7 +315,43 @@ BagFrames frames_of(const BagFile& bag, const BagTopics& topics, const BagStream
   return frames;
 }
 
-/// Sets the camera, and registration of depth if it is that of another camera.
+/// Registered depth may have the nominal calibration of a camera whose color image has an estimated one.
+bool is_same_camera(const Camera& a, const Camera& b, bool same_frame) {
+  const double tolerance = same_frame ? 0.05 : 0.0;
+  const auto differs = [tolerance](double x, double y, double scale) {
+    return std::abs(x - y) > tolerance * scale;
+  };
+  return a.width == b.width && a.height == b.height && !differs(a.fx, b.fx, b.fx) &&
+         !differs(a.fy, b.fy, b.fy) && !differs(a.cx, b.cx, b.width) && !differs(a.cy, b.cy, b.height);
+}
+
+/// Sets the registration of depth if it is that of another camera than the color image.
+void set_depth_camera(SequenceContent& content, const BagFile& bag, const BagTopics& topics,
+                      const BagFrames& frames) {
+  const bool same_frame = frames.depth == frames.color;
+  const std::optional<CameraInfoMessage> info = find_camera_info(bag, topics.depth, frames.depth);
+  if (!info) {
+    if (!same_frame)
+      content.info.warnings.push_back("depth: its frame \"" + frames.depth +
+                                      "\" is not that of the color image, \"" + frames.color +
+                                      "\", and the bag has no CameraInfo for " + topics.depth +
+                                      "; it is taken for registered to the color image, unless a rig.toml "
+                                      "states its camera in [depth]");
+    return;
+  }
+  const Camera depth = camera_of(*info, topics.depth, bag.path().string());
+  if (is_same_camera(depth, content.info.rig.camera, same_frame)) return;
+  const std::optional<Pose> T_c_d =
+      same_frame ? Pose{} : find_transform(frames.links, frames.color, frames.depth);
+  content.info.depth_camera = DepthCamera{.camera = depth, .T_c_d = T_c_d.value_or(Pose{})};
+  content.info.notes.push_back("depth of " + topics.depth + " is registered to the color camera");
+  if (!T_c_d)
+    content.info.warnings.push_back(
+        "depth: is that of another camera, and no transform of the bag connects \"" + frames.color +
+        "\" and \"" + frames.depth + "\"; it is registered as if both were at the same place");
+}
+
+/// Sets the camera of the color image, and that of depth.
 void set_cameras(SequenceContent& content, const BagFile& bag, const BagTopics& topics,
                  const BagFrames& frames) {
   const std::optional<CameraInfoMessage> color = find_camera_info(bag, topics.color, frames.color);
@@ -331,20 +367,7 @@ void set_cameras(SequenceContent& content, const BagFile& bag, const BagTopics& 
     return;
   }
   content.info.notes.push_back("calibration: CameraInfo of " + topics.color);
-  if (topics.depth.empty() || frames.depth == frames.color) return;
-  const std::optional<CameraInfoMessage> info = find_camera_info(bag, topics.depth, frames.depth);
-  const std::optional<Pose> T_c_d = find_transform(frames.links, frames.color, frames.depth);
-  if (!info) return;
-  const Camera depth = camera_of(*info, topics.depth, bag.path().string());
-  const bool same_camera = depth.width == camera.width && depth.height == camera.height &&
-                           depth.fx == camera.fx && depth.cx == camera.cx && depth.cy == camera.cy;
-  if (same_camera) return;
-  content.info.depth_camera = DepthCamera{.camera = depth, .T_c_d = T_c_d.value_or(Pose{})};
-  content.info.notes.push_back("depth of " + topics.depth + " is registered to the color camera");
-  if (!T_c_d)
-    content.info.warnings.push_back(
-        "depth: is that of another camera, and no transform of the bag connects \"" + frames.color +
-        "\" and \"" + frames.depth + "\"; it is registered as if both were at the same place");
+  if (!topics.depth.empty()) set_depth_camera(content, bag, topics, frames);
 }
 
 void set_imu(SequenceContent& content, const BagFrames& frames) {
@@ -394,6 +417,10 @@ SequenceContent read_bag_sequence(const std::filesystem::path& path, std::span<c
   content.info.notes.push_back("topics: " + topics_text(topics));
   content.info.warnings = bag->warnings();
   content.info.warnings.insert(content.info.warnings.end(), streams.warnings.begin(), streams.warnings.end());
+  if (!topics.unclear_depth.empty())
+    content.info.warnings.push_back(
+        "depth: no topic is named as depth; " + topics.unclear_depth +
+        " has images of 16 bits: if they are depth, select it with --topics depth=" + topics.unclear_depth);
   if (streams.color.empty()) throw InputError(path.string(), "contains no readable image of " + topics.color);
   add_frames(content, streams, bag);
   content.info.rig.depth_units_per_m = streams.float_depth

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "datasets/bags/bag_file.h"
+#include "datasets/bags/bag_geometry.h"
 #include "datasets/bags/messages.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
@@ -78,9 +79,12 @@ class BagBuilder {
   }
 
   void transform(const std::string& parent, const std::string& child, const Pose& pose) {
-    const PoseMessage link{.header = {.stamp = at_ms(0), .frame = parent}, .child = child, .pose = pose};
-    write("/tf_static", "tf2_msgs/TFMessage", at_ms(0),
-          serialize_transforms(std::span(&link, 1), writer_.format()));
+    transform("/tf_static", at_ms(0),
+              {.header = {.stamp = at_ms(0), .frame = parent}, .child = child, .pose = pose});
+  }
+
+  void transform(const std::string& topic, Timestamp t, const PoseMessage& link) {
+    write(topic, "tf2_msgs/TFMessage", t, serialize_transforms(std::span(&link, 1), writer_.format()));
   }
 
   void pose(const std::string& topic, Timestamp t, double x) {
@@ -156,6 +160,82 @@ TEST(BagSequence, InfraredBrightnessIsNoDepth) {
   EXPECT_TRUE(has_note(info, "depth /depth/image_raw"));
 }
 
+TEST(BagSequence, ImagesOf16BitsThatNoNameTellsAreReported) {
+  const auto with_range = [](std::vector<std::string> topics) {
+    return info_of_bag(
+        [](BagBuilder& bag) {
+          for (int i = 0; i < 3; ++i) bag.image("/range/image", at_ms(40 * i), "mono16");
+        },
+        std::move(topics));
+  };
+  EXPECT_TRUE(has_warning(with_range({}), "--topics depth=/range/image"));
+  EXPECT_TRUE(with_range({"depth="}).warnings.empty());
+  EXPECT_TRUE(has_note(with_range({"depth=/range/image"}), "depth /range/image"));
+}
+
+/// Focal length and center of the CameraInfo are those of the full image of 16x12 pixels.
+TEST(BagSequence, RegionOfInterestAndBinningChangeTheCalibration) {
+  const CameraInfoMessage full{.header = {},
+                               .height = 12,
+                               .width = 16,
+                               .distortion_model = "plumb_bob",
+                               .D = {},
+                               .K = {20, 0, 8, 0, 24, 6, 0, 0, 1},
+                               .P = {}};
+  CameraInfoMessage binned = full;
+  binned.binning_x = binned.binning_y = 2;
+  const Camera half = camera_of(binned, "/image_raw", "bag");
+  EXPECT_EQ(half.width, 8);
+  EXPECT_EQ(half.fy, 12.0);
+  EXPECT_EQ(half.cy, 3.0);
+  CameraInfoMessage part = full;
+  part.region = {.x = 6, .y = 2, .height = 6, .width = 8};
+  const Camera cut = camera_of(part, "/image_raw", "bag");
+  EXPECT_EQ(cut.height, 6);
+  EXPECT_EQ(cut.fx, 20.0);
+  EXPECT_EQ(cut.cx, 2.0);
+  part.region.x = 9;  // not within the full image
+  EXPECT_EQ(camera_of(part, "/image_raw", "bag").cx, 8.0);
+}
+
+TEST(BagSequence, OnlyWordsOfTheTopicTellThatImagesAreRectified) {
+  const CameraInfoMessage info{.header = {},
+                               .height = 6,
+                               .width = 8,
+                               .distortion_model = "plumb_bob",
+                               .D = {0.1, 0, 0, 0, 0},
+                               .K = {10, 0, 4, 0, 10, 3, 0, 0, 1},
+                               .P = {9, 0, 4, 0, 0, 9, 3, 0, 0, 0, 1, 0}};
+  EXPECT_EQ(camera_of(info, "/camera/image_rect_color", "bag").fx, 9.0);
+  EXPECT_EQ(camera_of(info, "/direct/image_raw", "bag").fx, 10.0);
+}
+
+/// A bag whose depth has the frame and size of the color image, and a CameraInfo with another focal length.
+TEST(BagSequence, DepthOfOtherIntrinsicsInTheSameFrameIsRegistered) {
+  const auto with_focal_length = [](double fx) {
+    return info_of_bag([fx](BagBuilder& bag) {
+      bag.camera_info("/depth/camera_info", fx);
+      for (int i = 0; i < 3; ++i) bag.image("/depth/image_raw", at_ms(40 * i), "16UC1");
+    });
+  };
+  const SequenceInfo other = with_focal_length(12.5);
+  ASSERT_TRUE(other.depth_camera.has_value());
+  EXPECT_EQ(other.depth_camera->camera.fx, 12.5);
+  EXPECT_TRUE(has_note(other, "is registered to the color camera"));
+  EXPECT_FALSE(has_warning(other, "as if both were at the same place"));
+  EXPECT_FALSE(with_focal_length(10.2).depth_camera.has_value());  // nominal values of registered depth
+}
+
+TEST(BagSequence, DepthInAnotherFrameWithoutCalibrationIsReported) {
+  const auto in_frame = [](const std::string& frame) {
+    return info_of_bag([&frame](BagBuilder& bag) {
+      for (int i = 0; i < 3; ++i) bag.image("/depth/image_raw", at_ms(40 * i), "16UC1", frame);
+    });
+  };
+  EXPECT_TRUE(has_warning(in_frame("tof"), "no CameraInfo for /depth/image_raw"));
+  EXPECT_TRUE(in_frame("cam").warnings.empty());
+}
+
 TEST(BagSequence, InertialMessagesWithNanAreSkippedAndCounted) {
   const SequenceInfo info = info_of_bag([&](BagBuilder& bag) {
     for (int i = 0; i < 10; ++i)
@@ -196,6 +276,35 @@ TEST(BagSequence, TwoInertialTopicsAreMerged) {
   EXPECT_EQ(info.imu[0].gyro_b.z(), 1.0);
   EXPECT_EQ(info.rig.T_b_c.p.x(), 0.1);
   EXPECT_EQ(info.rig.camera.fx, 10.0);
+}
+
+/// Of `camera_x`, the position of the camera in the frame of the IMU on /tf.
+std::optional<double> x_of_camera(std::initializer_list<double> camera_x) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.camera_info("/camera_info", 10.0);
+  for (int i = 0; i < 10; ++i) {
+    if (i < 3) bag.image("/image_raw", at_ms(40 * i), "mono8");
+    bag.imu("/imu", at_ms(10 * i), {0, 0, 0}, {0, -9.8, 0});
+  }
+  for (int i = 0; const double x : camera_x) {
+    const Timestamp t = at_ms(10 * i++);
+    bag.transform("/tf", t,
+                  {.header = {.stamp = t, .frame = "imu"},
+                   .child = "cam",
+                   .pose = Pose{Eigen::Quaterniond::Identity(), {x, 0, 0}}});
+  }
+  bag.finish();
+  try {
+    return open_sequence(folder.path() / "a.bag")->info().rig.T_b_c.p.x();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+TEST(BagSequence, TransformsOfTfThatNeverChangeAreFixed) {
+  EXPECT_EQ(x_of_camera({0.1, 0.1, 0.1}), 0.1);
+  EXPECT_FALSE(x_of_camera({0.1, 0.1, 0.2}).has_value());
 }
 
 /// Recorded by librealsense: streams below /device_0, extrinsics to stream 0, no frames in the headers, depth

@@ -60,6 +60,29 @@ TEST(ImageMessage, YuvIsConvertedByBt601) {
   EXPECT_EQ(yuy2.at<cv::Vec3b>(0, 1), cv::Vec3b(100, 100, 100));
 }
 
+TEST(ImageMessage, TheNamesOfYuvInRos2AreThoseOfTheirOrder) {
+  for (const auto& [ros1, ros2] :
+       {std::pair<std::string, std::string>{"yuv422", "uyvy"}, {"yuv422_yuy2", "yuyv"}}) {
+    EXPECT_EQ(content_of_encoding(ros2), ImageContent::kColor);
+    const std::string data = "\x32\x80\x64\xe4";
+    const cv::Mat image = decode_color_message(image_of(ros2, 2, 4, data), "bag");
+    EXPECT_EQ(image.at<cv::Vec3b>(0, 1),
+              decode_color_message(image_of(ros1, 2, 4, data), "bag").at<cv::Vec3b>(0, 1))
+        << ros2;
+  }
+}
+
+TEST(ImageMessage, APngOfOneChannelOfSixteenBitsIsDepth) {
+  const TemporaryFolder folder;
+  const auto content_of = [&folder](const cv::Mat& image) {
+    write_png(folder.path() / "a.png", image);
+    return content_of_compressed("png", "header" + file_bytes_of(folder.path() / "a.png"));
+  };
+  EXPECT_EQ(content_of(cv::Mat(4, 4, CV_16UC1, cv::Scalar(1234))), ImageContent::kDepth);
+  EXPECT_EQ(content_of(cv::Mat(4, 4, CV_8UC1, cv::Scalar(12))), ImageContent::kColor);
+  EXPECT_EQ(content_of(cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3))), ImageContent::kColor);
+}
+
 TEST(ImageMessage, DepthOfSixteenBitsIsRead) {
   ImageMessage image = image_of("16UC1", 2, 4, std::string_view("\1\2\0\0", 4));
   EXPECT_EQ(decode_depth_message(image, "bag").at<std::uint16_t>(0, 0), 0x0201);
@@ -162,7 +185,7 @@ TEST(ImageMessage, UnknownEncodingsAndTooFewDataAreRejected) {
   expect_input_error([] { static_cast<void>(decode_depth_message(image_of("16UC1", 2, 2, "abcd"), "bag")); },
                      {"does not fit its data"});
   EXPECT_EQ(content_of_encoding("bayer_rggb8"), ImageContent::kOther);
-  EXPECT_EQ(content_of_format("16UC1; compressedDepth"), ImageContent::kDepth);
+  EXPECT_EQ(content_of_compressed("16UC1; compressedDepth", ""), ImageContent::kDepth);
 }
 
 }  // namespace
