@@ -263,6 +263,7 @@ std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::s
         members[i], [&](const StoredRun* run) { return value_of(*run, metric).has_value(); }));
     rows[i].without_value = rows[i].runs - rows[i].failed - with_value;
     rows[i].doubt = few_rpe_pairs_note(members[i], metric);
+    if (rows[i].doubt.empty()) rows[i].doubt = doubtful_error_note(members[i], metric);
     if (rows[i].doubt.empty()) rows[i].doubt = scatter_note(members[i], metric);
     rows[i].copies = with_value - (rows[i].spread ? rows[i].spread->count : 0);
   }

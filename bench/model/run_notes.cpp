@@ -161,6 +161,16 @@ std::string innovation_note(std::span<const StoredRun* const> runs) {
   return most.empty() ? "" : fmt::format("{}; see `stillpoint diagnose`", fmt::join(most, "; "));
 }
 
+std::string doubtful_error_note(std::span<const StoredRun* const> runs, std::string_view metric) {
+  const std::string_view name = without_protocol(metric);
+  if (!name.starts_with("ate_") && !name.starts_with("rpe_")) return "";
+  const auto doubtful = std::ranges::find_if(runs, [&](const StoredRun* run) {
+    return run->outcome == Outcome::kOk && !run->detail.empty() &&
+           std::ranges::any_of(run->metrics, [&](const Metric& own) { return own.name == metric; });
+  });
+  return doubtful == runs.end() ? "" : (*doubtful)->detail;
+}
+
 TimeSource time_source(const StoredRun& run) {
   if (run.identity.kind != "timing") return TimeSource::kShared;
   return metric_value(run, metric_id::kQuiet) == 0.0 ? TimeSource::kBusy : TimeSource::kUndisturbed;

@@ -46,6 +46,13 @@ inline constexpr double kMaxCoverageGap = 0.2;
 /// @param metric id, e.g. "ate_rmse_m"
 [[nodiscard]] std::string scatter_note(std::span<const StoredRun* const> runs, std::string_view metric);
 
+/// Footnote on why errors are doubtful though the run succeeded, as another unit or body frame than that of
+/// the ground truth: the `detail` of the first such run. Empty for a metric that is no error.
+/// @param runs of one variant on one sequence; failed ones are ignored
+/// @param metric id, e.g. "ate_rmse_m"
+[[nodiscard]] std::string doubtful_error_note(std::span<const StoredRun* const> runs,
+                                              std::string_view metric);
+
 /// What the innovations of a run say about its data: one phrase for a mean NIS of the images above 4, and one
 /// for that of the IMU above 3 (metrics `nis_reprojection`, `nis_inertial`; 1 is consistent).
 [[nodiscard]] std::vector<std::string> innovation_doubts(std::optional<double> nis_reprojection,

@@ -105,7 +105,7 @@ inline constexpr std::string_view kImageKind = "image:";
 /// Result of a run, as written to a store.
 struct RunOutcome {
   Outcome outcome = Outcome::kOk;
-  std::string detail;  ///< reason when not ok
+  std::string detail;  ///< reason when not ok; else why the errors are doubtful
   std::vector<Metric> metrics;
   std::vector<ModuleCost> costs;
   /// Content by kind: "trajectory" (TUM text), "truth" (TUM text, ground truth in the same coordinate frame),

@@ -9,7 +9,6 @@
 
 #include "bench/run/run_scores.h"
 #include "datasets/faults/faulty_stream.h"
-#include "eval/compare/conventions.h"
 #include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
@@ -174,21 +173,31 @@ Measurements measurements_of(const RunResult& result) {
 
 namespace {
 
-/// What explains errors against the ground truth. The trajectory follows all conventions, so apart from the
-/// scale it is the ground truth that does not, unless a fault was injected. Stamps that match have one unit.
-std::vector<std::string> truth_warnings(const RunResult& result, bool has_faults) {
+/// Stamps that match have one unit, and faults look like violations of most conventions.
+std::vector<eval::ConventionFinding> conventions_of(const RunResult& result, bool has_faults) {
   using enum eval::Convention;
+  const std::size_t pairs = result.score.ate ? result.score.ate->pairs : 0;
+  std::vector<eval::ConventionFinding> findings =
+      eval::find_convention_violations(result.gt, result.run.trajectory);
+  std::erase_if(findings, [&](const eval::ConventionFinding& finding) {
+    return (has_faults && finding.convention != kScale) || finding.convention == kSwappedArguments ||
+           (finding.convention == kStampUnit && pairs > 0);
+  });
+  return findings;
+}
+
+/// The trajectory of this odometry follows all conventions, so apart from the scale it is the ground truth
+/// that does not.
+std::vector<std::string> truth_warnings(const RunResult& result) {
   std::vector<std::string> warnings;
   const std::size_t pairs = result.score.ate ? result.score.ate->pairs : 0;
-  for (const eval::ConventionFinding& finding :
-       eval::find_convention_violations(result.gt, result.run.trajectory)) {
-    const bool is_scale = finding.convention == kScale;
-    if (is_scale) warnings.push_back("trajectory: " + finding.message);
-    if (is_scale || has_faults || finding.convention == kSwappedArguments ||
-        finding.convention == kRepeatedPoses || (finding.convention == kStampUnit && pairs > 0))
-      continue;
-    warnings.push_back("ground truth: compared with it, " + finding.message +
-                       "; `stillpoint diagnose` tests the ground truth");
+  for (const eval::ConventionFinding& finding : result.conventions) {
+    if (finding.convention == eval::Convention::kScale) {
+      warnings.push_back("trajectory: " + finding.message);
+    } else if (finding.convention != eval::Convention::kRepeatedPoses) {
+      warnings.push_back("ground truth: compared with it, " + finding.message +
+                         "; `stillpoint diagnose` tests the ground truth");
+    }
   }
   if (warnings.empty() && !result.gt.poses.empty() && 2 * pairs < result.score.poses) {
     warnings.push_back(fmt::format(
@@ -219,8 +228,8 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
   if (!faults.empty())
     result.honesty = eval::honesty(result.gt, run.claims, fault_spans(faults, options.expected_times));
   result.run = std::move(run);
-  for (std::string& warning : truth_warnings(result, !faults.empty()))
-    result.warnings.push_back(std::move(warning));
+  result.conventions = conventions_of(result, !faults.empty());
+  for (std::string& warning : truth_warnings(result)) result.warnings.push_back(std::move(warning));
   return result;
 }
 

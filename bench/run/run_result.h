@@ -10,6 +10,7 @@
 #include "bench/model/metrics.h"
 #include "bench/run/odometry_run.h"
 #include "datasets/faults/sensor_fault.h"
+#include "eval/compare/conventions.h"
 
 namespace stillpoint::bench {
 
@@ -22,6 +23,8 @@ struct RunResult {
   std::vector<std::string> notes;     ///< assumptions of the sequence reader
   std::vector<std::string> warnings;  ///< irregularities of the data, as "LOCATION: FAULT"
   Trajectory gt;                      ///< of the camera, over the processed frames
+  /// What explains errors against the ground truth, such as another unit or body frame.
+  std::vector<eval::ConventionFinding> conventions;
   eval::Score score;
   std::optional<eval::Honesty> honesty;  ///< if faults were injected
   std::optional<LoopScore> loops;        ///< if loop closure was on

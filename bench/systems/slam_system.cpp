@@ -39,6 +39,15 @@ std::string message_of(const ProcessResult& process) {
   return line.starts_with(kErrorPrefix) ? line.substr(kErrorPrefix.size()) : line;
 }
 
+/// The first warning of a result about its errors; empty without one.
+std::string truth_doubt(const Json& warnings) {
+  for (const Json& warning : warnings) {
+    const auto text = warning.get<std::string>();
+    if (text.starts_with("trajectory: ") || text.starts_with("ground truth: ")) return text;
+  }
+  return "";
+}
+
 RunOutcome without_result(const ProcessResult& process) {
   RunOutcome outcome;
   const bool out_of_memory = process.messages.find("bad_alloc") != std::string::npos;
@@ -137,7 +146,8 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& 
     outcome.outcome = outcome_of(result.at("status").get<std::string>());
     // By another process: a worker releases the runs that it interrupts itself.
     if (outcome.outcome == Outcome::kInterrupted) outcome.outcome = Outcome::kCrashed;
-    if (result.at("failure").is_string()) outcome.detail = result.at("failure").get<std::string>();
+    outcome.detail = result.at("failure").is_string() ? result.at("failure").get<std::string>()
+                                                      : truth_doubt(result.value("warnings", Json::array()));
     outcome.metrics = stored_metrics(result);
     outcome.costs = module_costs(result.at("timings"));
     outcome.manifest = without_start_time(eval::read_text_file(request.work / "manifest.json"));

@@ -118,6 +118,8 @@ Json notes_json(const bench::StoredRun& run) {
     if (const std::string note = bench::protocol_difference_note(runs, metric->id); !note.empty())
       notes.push_back(clean_line(note));
   }
+  if (const std::string note = bench::doubtful_error_note(runs, bench::headline_metric().id); !note.empty())
+    notes.push_back(clean_line(note));
   if (const std::string note = bench::missing_boxes_note(runs); !note.empty())
     notes.push_back(clean_line(note));
   return notes;

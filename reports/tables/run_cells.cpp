@@ -134,6 +134,7 @@ TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::str
   if (!is_accuracy) return cell;
   if (const auto coverage = bench::metric_spread(runs, std::string(bench::metric_id::kCoverage)))
     cell.coverage = coverage->median;
+  cell = with_note(std::move(cell), bench::doubtful_error_note(runs, metric));
   return with_note(std::move(cell), bench::missing_boxes_note(runs));
 }
 

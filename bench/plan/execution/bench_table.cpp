@@ -71,6 +71,7 @@ BenchRow row_with_outcome(const std::vector<const StoredRun*>& runs, const std::
     }
   }
   if (row.reason.empty()) row.reason = missing_boxes_note(runs);
+  if (row.reason.empty()) row.reason = doubtful_error_note(runs, headline_metric().id);
   const std::optional<double> load = median_of(runs, metric_id::kOtherLoad);
   if (row.reason.empty() && median_of(runs, metric_id::kQuiet) == 0.0 && load) {
     row.reason =

@@ -90,6 +90,18 @@ TEST(Scatter, OfRunsOnTheSameDataIsNotedFromAFactorOfTwoOn) {
   EXPECT_EQ(note({}), "");
 }
 
+TEST(DoubtfulErrors, AreNotedOfRunsThatSucceeded) {
+  StoredRun run;
+  run.detail = "the estimate is mirrored";
+  run.metrics = {{"ate_rmse_m", "", "m", 0.1}, {"coverage", "", "", 1.0}};
+  const std::vector<const StoredRun*> runs{&run};
+  EXPECT_EQ(doubtful_error_note(runs, metric_id::kAte), "the estimate is mirrored");
+  EXPECT_EQ(doubtful_error_note(runs, metric_id::kCoverage), "");
+  EXPECT_EQ(doubtful_error_note(runs, "rpe_rot_rmse_deg_per_s"), "");  // the run has none
+  run.outcome = Outcome::kCrashed;
+  EXPECT_EQ(doubtful_error_note(runs, metric_id::kAte), "");
+}
+
 TEST(Innovations, AreNotedForTheRunThatContradictsItsDataMost) {
   const auto run_with = [](double reprojection, double inertial) {
     StoredRun run;
