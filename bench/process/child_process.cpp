@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -130,6 +131,32 @@ std::int64_t peak_resident_bytes(pid_t pid) {
   return 0;
 }
 
+/// Unlike that of any other child.
+std::string next_mark() {
+  static std::atomic<int> count{0};
+  return "STILLPOINT_PROCESS=" + std::to_string(getpid()) + "." + std::to_string(++count);
+}
+
+/// Kills the processes whose environment contains `mark`: launchers such as roslaunch start theirs in
+/// sessions of their own, which a signal to the process group does not reach.
+/// @return whether there were any
+bool kill_marked(const std::string& mark) {
+  bool any = false;
+  std::error_code ended;
+  for (std::filesystem::directory_iterator entry("/proc", ended), end; !ended && entry != end;
+       entry.increment(ended)) {
+    const pid_t process = std::atoi(entry->path().filename().c_str());
+    if (process <= 0) continue;
+    std::ifstream file(entry->path() / "environ", std::ios::binary);
+    for (std::string variable; std::getline(file, variable, '\0');) {
+      if (variable != mark) continue;
+      any = kill(process, SIGKILL) == 0 || any;
+      break;
+    }
+  }
+  return any;
+}
+
 /// Two pipes that exec closes; reading does not block.
 std::array<std::array<int, 2>, 2> make_pipes() {
   std::array<std::array<int, 2>, 2> pipes{};
@@ -180,6 +207,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
   words.insert(words.end(), spec.arguments.begin(), spec.arguments.end());
   const std::vector<char*> arguments = pointers_to(words);
   std::vector<std::string> settings = spec.environment.value_or(std::vector<std::string>{});
+  if (spec.environment) settings.push_back(mark_ = next_mark());
   const std::vector<char*> environment = pointers_to(settings);
 
   const auto [ends, execution] = make_pipes();
@@ -314,6 +342,13 @@ void ChildProcess::terminate() const {
 void ChildProcess::kill_family() const {
   kill(-pid_, SIGKILL);
   kill(pid_, SIGKILL);  // its process group may not exist yet
+  kill_descendants();
+}
+
+void ChildProcess::kill_descendants() const {
+  constexpr int kMaxRounds = 10;  // they may start others until they are killed
+  for (int round = 0; !mark_.empty() && round < kMaxRounds && kill_marked(mark_); ++round) {
+  }
 }
 
 ProcessResult ChildProcess::wait() {
@@ -325,6 +360,7 @@ ProcessResult ChildProcess::wait() {
   result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   read_messages();
   kill(-pid_, SIGKILL);  // its remaining children
+  kill_descendants();
   pid_ = -1;
   result_.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   result_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;

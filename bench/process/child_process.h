@@ -22,14 +22,16 @@ struct ProcessSpec {
   std::filesystem::path program;  ///< searched in PATH if it contains no slash
   std::vector<std::string> arguments;
   std::optional<double> time_limit_s;
-  std::optional<std::int64_t> memory_limit_bytes;       ///< resident, of it and its descendants
-  std::optional<std::int64_t> message_limit_bytes;      ///< of all messages
-  std::vector<int> cores;                               ///< CPU affinity; empty = all processors
-  std::filesystem::path folder;                         ///< working directory; empty = inherited
-  std::optional<std::vector<std::string>> environment;  ///< "NAME=value", complete; nullopt = inherited
-  std::filesystem::path output;                         ///< receives stdout; empty = discarded
-  bool output_in_messages = false;                      ///< stdout belongs to the messages; `output` is empty
-  bool fixed_addresses = false;                         ///< disables address space randomization
+  std::optional<std::int64_t> memory_limit_bytes;   ///< resident, of it and its descendants
+  std::optional<std::int64_t> message_limit_bytes;  ///< of all messages
+  std::vector<int> cores;                           ///< CPU affinity; empty = all processors
+  std::filesystem::path folder;                     ///< working directory; empty = inherited
+  /// "NAME=value", complete except for STILLPOINT_PROCESS, by which descendants are found that have left the
+  /// process group; nullopt = inherited.
+  std::optional<std::vector<std::string>> environment;
+  std::filesystem::path output;     ///< receives stdout; empty = discarded
+  bool output_in_messages = false;  ///< stdout belongs to the messages; `output` is empty
+  bool fixed_addresses = false;     ///< disables address space randomization
 };
 
 /// Exit status and resource usage of a process.
@@ -81,7 +83,7 @@ class ChildProcess {
 
   /// Sends SIGTERM.
   void terminate() const;
-  /// Sends SIGKILL to the child and the processes of its group.
+  /// Sends SIGKILL to the child, the processes of its group, and those with its mark in their environment.
   void kill_family() const;
 
   /// Waits for the exit; does not block after `poll_once` returned false.
@@ -90,6 +92,7 @@ class ChildProcess {
  private:
   void read_messages();
   void close_pipe();
+  void kill_descendants() const;
   [[nodiscard]] bool has_exited() const;
   void measure_memory();
   [[nodiscard]] bool is_executed();
@@ -97,6 +100,7 @@ class ChildProcess {
   void enforce_limits();
 
   ProcessSpec spec_;
+  std::string mark_;  ///< "STILLPOINT_PROCESS=...", in the environment of the child; empty if it is inherited
   pid_t pid_ = -1;
   int pipe_ = -1;
   int execution_pipe_ = -1;                         ///< closed by exec; -1 once it was

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/profile/meters/process_usage.h"
+#include "eval/io/text_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {
@@ -68,6 +69,29 @@ TEST(ChildProcess, PassesOnlyTheGivenEnvironment) {
   ProcessSpec spec = shell("echo \"$COLOUR$HOME\" >&2");
   spec.environment = {"COLOUR=red", "PATH=/usr/bin:/bin"};
   EXPECT_EQ(last_line(run_process(spec).messages), "red");
+}
+
+/// Launchers such as roslaunch start their programs in sessions of their own.
+TEST(ChildProcess, EndsDescendantsInOtherSessionsWithIt) {
+  const TemporaryFolder folder;
+  const std::string pid_file = (folder.path() / "pid").string();
+  const auto is_running = [&pid_file] {
+    const std::string pid = eval::read_text_file(pid_file);
+    std::ifstream status("/proc/" + pid.substr(0, pid.find('\n')) + "/environ");
+    return status.get() !=
+           std::ifstream::traits_type::eof();  // of a process that has ended: missing or empty
+  };
+  ProcessSpec spec = shell("setsid sh -c 'echo $$ >" + pid_file + "; exec sleep 60' & while ! test -s " +
+                           pid_file + "; do sleep 0.01; done");
+  spec.environment = {"PATH=/usr/bin:/bin"};
+  EXPECT_EQ(run_process(spec).exit_code, 0);
+  for (int i = 0; is_running() && i < 100; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(is_running());
+  spec.arguments.back() += "; sleep 60";
+  spec.time_limit_s = 0.5;
+  EXPECT_TRUE(run_process(spec).timed_out);
+  for (int i = 0; is_running() && i < 100; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(is_running());
 }
 
 TEST(ChildProcess, StartsInTheGivenFolder) {
