@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -100,17 +101,28 @@ inline std::span<const double> span_of(const Doubles& array) {
 }
 
 /// Stamps [ns].
-/// @throws InputError for an array that is not [n] of integers
-inline std::vector<Timestamp> stamps_of(const py::array& times_ns, const std::string& name) {
-  require_shape(times_ns, name, {-1});
-  const char kind = times_ns.dtype().kind();
-  if (kind != 'i' && kind != 'u') {
-    throw InputError(name, std::string("is no array of integers but of dtype \"") + kind +
+/// @param times_ns integers or datetime64 of any unit: an array, a list, or a series of pandas
+/// @param name of the argument, for the message
+/// @throws InputError for anything else, no time (NaT), or stamps beyond int64
+inline std::vector<Timestamp> stamps_of(const py::object& times_ns, const std::string& name) {
+  py::array array = py::array::ensure(times_ns);
+  if (!array) throw InputError(name, "is no array");
+  require_shape(array, name, {-1});
+  const char kind = array.dtype().kind();
+  if (kind == 'M') array = array.attr("astype")("datetime64[ns]").attr("view")("int64").cast<py::array>();
+  if (kind != 'i' && kind != 'u' && kind != 'M') {
+    throw InputError(name, std::string("is no array of integers or times but of dtype \"") + kind +
                                "\"; stamps are int64 nanoseconds, see Trajectory.from_seconds");
   }
-  const auto values = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(times_ns);
+  const auto values = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
   std::vector<Timestamp> stamps(static_cast<std::size_t>(values.size()));
-  for (std::size_t i = 0; i < stamps.size(); ++i) stamps[i].ns = values.data()[i];
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    stamps[i].ns = values.data()[i];
+    const bool is_none = kind == 'M' && stamps[i].ns == std::numeric_limits<std::int64_t>::min();
+    if (is_none || (kind == 'u' && stamps[i].ns < 0))
+      throw InputError(name + "[" + std::to_string(i) + "]",
+                       is_none ? "is no time (NaT)" : "exceeds the range of int64 nanoseconds");
+  }
   return stamps;
 }
 

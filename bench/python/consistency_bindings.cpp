@@ -192,7 +192,7 @@ void bind_loops(py::module_& m) {
       .field("recall", &RevisitScore::recall, "In [0, 1]; None without revisits.");
   m.def(
       "score_revisits",
-      [](const Trajectory& gt, const py::array& keyframes_ns,
+      [](const Trajectory& gt, const py::object& keyframes_ns,
          const std::vector<std::tuple<std::int64_t, std::int64_t, Doubles, bool>>& loops) {
         std::vector<eval::ReportedLoop> reported;
         for (const auto& loop : loops) reported.push_back(loop_of(loop));

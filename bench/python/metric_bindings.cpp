@@ -93,7 +93,7 @@ void bind_ate(py::module_& m) {
 void bind_coverage(py::module_& m) {
   m.def(
       "coverage",
-      [](const Trajectory& est, const py::array& expected_ns, double tolerance_s) {
+      [](const Trajectory& est, const py::object& expected_ns, double tolerance_s) {
         return eval::coverage(est, stamps_of(expected_ns, "expected_ns"), tolerance_s);
       },
       py::arg("est"), py::arg("expected_ns"), py::arg("tolerance_s") = 1e-3,
@@ -252,7 +252,7 @@ void bind_score(py::module_& m) {
       .field("poses", &Score::poses, "Of the estimate.");
   m.def(
       "score",
-      [](const Trajectory& gt, const Trajectory& est, const std::optional<py::array>& expected_ns,
+      [](const Trajectory& gt, const Trajectory& est, const std::optional<py::object>& expected_ns,
          double offset_s) {
         eval::ScoreOptions options{.offset_s = offset_s};
         if (expected_ns) options.expected_times = stamps_of(*expected_ns, "expected_ns");

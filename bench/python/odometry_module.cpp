@@ -125,7 +125,7 @@ void bind_update(py::module_& m) {
 }
 
 /// Adds samples [n] in one call.
-void add_samples(Odometry& odometry, const py::array& times_ns, const Doubles& gyro, const Doubles& accel) {
+void add_samples(Odometry& odometry, const py::object& times_ns, const Doubles& gyro, const Doubles& accel) {
   const std::vector<Timestamp> stamps = stamps_of(times_ns, "times_ns");
   const auto count = static_cast<py::ssize_t>(stamps.size());
   require_shape(gyro, "gyro", {count, 3});

@@ -123,12 +123,13 @@ void bind_trajectory(py::module_& m) {
       m, "Trajectory",
       "Poses T_w_f of a body frame f in a world w, in strictly increasing order of time. The arrays "
       "are read-only views of its memory.")
-      .def(py::init([](const py::array& times_ns, const Doubles& positions, const Doubles& quaternions,
+      .def(py::init([](const py::object& times_ns, const Doubles& positions, const Doubles& quaternions,
                        const std::string& frame) {
              return trajectory_of({stamps_of(times_ns, kTimes), positions, quaternions}, frame);
            }),
            py::arg("times_ns"), py::arg("positions"), py::arg("quaternions_xyzw"), py::arg("frame") = "",
-           "From arrays: times int64 [n] in ns, positions [n, 3] in m, quaternions (x, y, z, w) [n, 4], "
+           "From arrays: times int64 or datetime64 [n] in ns, positions [n, 3] in m, quaternions (x, y, z, "
+           "w) [n, 4], "
            "whose norms are "
            "within 0.1 of 1. They are copied. Raises InputError for another shape, an order of time that is "
            "not strict, "

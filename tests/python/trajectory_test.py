@@ -52,6 +52,38 @@ def test_stamps_of_integer_types_are_taken(kind):
     assert sp.Trajectory(np.arange(3, dtype=kind), np.ones((3, 3)), np.tile(IDENTITY, (3, 1))).times_ns.tolist() == [0, 1, 2]
 
 
+@pytest.mark.parametrize("unit", ["ns", "us", "s"])
+def test_stamps_of_times_are_taken_to_the_nanosecond(unit):
+    times = np.array([1_700_000_000, 1_700_000_001]).astype("datetime64[s]").astype(f"datetime64[{unit}]")
+    poses = sp.Trajectory(times, np.ones((2, 3)), np.tile(IDENTITY, (2, 1)))
+    assert poses.times_ns.tolist() == [1_700_000_000 * 10**9, 1_700_000_001 * 10**9]
+
+
+def test_columns_of_pandas_and_lists_are_taken():
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame({"t": [5, 6], "x": [0.0, 1.0], "y": 0.0, "z": 0.0, "qx": 0.0, "qy": 0.0, "qz": 0.0, "qw": 1.0})
+    table.index = [7, 3]
+    poses = sp.Trajectory(table["t"], table[["x", "y", "z"]], table[["qx", "qy", "qz", "qw"]])
+    assert poses.times_ns.tolist() == [5, 6] and poses.positions[1, 0] == 1.0
+    times = pandas.to_datetime(table["t"], unit="ns")
+    assert sp.Trajectory(times, table[["x", "y", "z"]], table[["qx", "qy", "qz", "qw"]]).times_ns.tolist() == [5, 6]
+    assert len(sp.Trajectory([1, 2], [[0, 0, 0]] * 2, [IDENTITY] * 2)) == 2
+
+
+@pytest.mark.parametrize(
+    "times, problem",
+    [
+        (np.array([0, 2**63], np.uint64), r"times_ns\[1\]: exceeds the range of int64"),
+        (np.array(["2026-01-01", "NaT"], "datetime64[ns]"), r"times_ns\[1\]: is no time"),
+        (["a", "b"], "no array of integers or times"),
+        (None, "times_ns: has the shape"),
+    ],
+)
+def test_stamps_that_are_none_are_named(times, problem):
+    with pytest.raises(InputError, match=problem):
+        sp.Trajectory(times, np.ones((2, 3)), np.tile(IDENTITY, (2, 1)))
+
+
 def test_strided_and_reversed_arrays_are_read_as_they_are_indexed():
     positions = np.arange(30.0).reshape(10, 3)[::-2]
     assert np.array_equal(sp.Trajectory(np.arange(5), positions, np.tile(IDENTITY, (5, 1))).positions, positions)
