@@ -128,6 +128,13 @@ std::map<Link, std::vector<StampedPose>> read_moving_transforms(const BagFile& b
   return links;
 }
 
+bool is_constant(const std::vector<StampedPose>& poses) {
+  const Pose& first = poses.front().T_w_f;
+  return std::ranges::all_of(poses, [&first](const StampedPose& pose) {
+    return pose.T_w_f.p == first.p && pose.T_w_f.q.coeffs() == first.q.coeffs();
+  });
+}
+
 /// The transform at a time between two of its messages.
 std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, Timestamp t) {
   const auto next = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
@@ -163,34 +170,60 @@ std::vector<Link> links_between(const std::map<Link, std::vector<StampedPose>>& 
   return path;
 }
 
+/// The poses of `child` in `parent` at the times of the link with the most messages.
+eval::LoadedTrajectory chained_poses(const std::map<Link, std::vector<StampedPose>>& moving,
+                                     const std::vector<Link>& path, const std::vector<NamedTransform>& fixed,
+                                     const Link& ends) {
+  const Link& fastest =
+      *std::ranges::max_element(path, {}, [&moving](const Link& link) { return moving.at(link).size(); });
+  std::vector<StampedPose> poses;
+  eval::RowRepairs repairs;
+  for (const StampedPose& sample : moving.at(fastest)) {
+    std::vector<NamedTransform> now = fixed;
+    for (const Link& link : path) {
+      if (const std::optional<Pose> pose = pose_at(moving.at(link), sample.t))
+        now.push_back({.parent = link.first, .child = link.second, .T_parent_child = *pose});
+    }
+    if (const std::optional<Pose> pose = find_transform(now, ends.first, ends.second)) {
+      poses.push_back({sample.t, *pose});
+    } else {
+      ++repairs.skipped;
+    }
+  }
+  return sorted_trajectory(std::move(poses), repairs);
+}
+
+/// Removes the links that never change from a path on which others do, and adds them to the fixed ones: some
+/// publishers send them once, or rarely.
+void fix_constant_links(const std::map<Link, std::vector<StampedPose>>& moving, std::vector<Link>& path,
+                        std::vector<NamedTransform>& fixed) {
+  const auto never_changes = [&moving](const Link& link) { return is_constant(moving.at(link)); };
+  if (std::ranges::all_of(path, never_changes)) return;
+  for (const Link& link : path) {
+    if (never_changes(link))
+      fixed.push_back(
+          {.parent = link.first, .child = link.second, .T_parent_child = moving.at(link).front().T_w_f});
+  }
+  std::erase_if(path, never_changes);
+}
+
 eval::LoadedTrajectory trajectory_of_frames(const BagFile& bag, const std::string& parent,
                                             const std::string& child) {
   const std::map<Link, std::vector<StampedPose>> moving = read_moving_transforms(bag);
-  std::vector<NamedTransform> links = read_static_transforms(bag);
-  const std::size_t fixed = links.size();
+  std::vector<NamedTransform> fixed = read_static_transforms(bag);
+  std::vector<NamedTransform> links = fixed;
   for (const auto& [link, poses] : moving)
     links.push_back({.parent = link.first, .child = link.second, .T_parent_child = poses.front().T_w_f});
   if (!find_transform(links, parent, child))
     throw InputError(bag.path().string() + ":/tf", "no chain of transforms connects \"" + parent +
                                                        "\" and \"" + child + "\"; the moving ones are " +
                                                        list_of(moving));
-  const std::vector<Link> path = links_between(moving, links, parent, child);
+  std::vector<Link> path = links_between(moving, links, parent, child);
   if (path.empty())
     throw InputError(bag.path().string() + ":/tf", "\"" + child + "\" does not move in \"" + parent +
                                                        "\"; the moving transforms are " + list_of(moving));
-  const Link& fastest =
-      *std::ranges::max_element(path, {}, [&moving](const Link& link) { return moving.at(link).size(); });
-  std::vector<StampedPose> poses;
-  for (const StampedPose& sample : moving.at(fastest)) {
-    std::vector<NamedTransform> now(links.begin(), links.begin() + static_cast<std::ptrdiff_t>(fixed));
-    for (const Link& link : path) {
-      if (const std::optional<Pose> pose = pose_at(moving.at(link), sample.t))
-        now.push_back({.parent = link.first, .child = link.second, .T_parent_child = *pose});
-    }
-    if (const std::optional<Pose> pose = find_transform(now, parent, child))
-      poses.push_back({sample.t, *pose});
-  }
-  eval::LoadedTrajectory loaded = sorted_trajectory(std::move(poses), {});
+  fix_constant_links(moving, path, fixed);
+  eval::LoadedTrajectory loaded = chained_poses(moving, path, fixed, {parent, child});
   loaded.trajectory.frame = child;
   return loaded;
 }
@@ -232,14 +265,11 @@ std::vector<NamedTransform> read_fixed_transforms(const BagFile& bag) {
     const auto same_link = [&link](const NamedTransform& known) {
       return known.parent == link.first && known.child == link.second;
     };
-    const Pose& first = poses.front().T_w_f;
-    const auto is_first = [&first](const StampedPose& pose) {
-      return pose.T_w_f.p == first.p && pose.T_w_f.q.coeffs() == first.q.coeffs();
-    };
-    if (poses.size() > 1 && std::ranges::all_of(poses, is_first) &&
+    if (poses.size() > 1 && is_constant(poses) &&
         std::none_of(transforms.begin(), transforms.begin() + static_cast<std::ptrdiff_t>(of_static_topic),
                      same_link))
-      transforms.push_back({.parent = link.first, .child = link.second, .T_parent_child = first});
+      transforms.push_back(
+          {.parent = link.first, .child = link.second, .T_parent_child = poses.front().T_w_f});
   }
   return transforms;
 }

@@ -29,7 +29,8 @@ std::vector<std::string> repair_texts(const RowRepairs& repairs) {
   std::vector<std::string> texts;
   if (repairs.skipped > 0) {
     texts.push_back(rows_text(repairs.skipped) +
-                    " skipped: no valid pose (nan, a zero quaternion, no GNSS fix, or a damaged sentence)");
+                    " skipped: no valid pose (nan, a zero quaternion, no GNSS fix, a damaged sentence, or a "
+                    "link of /tf without a transform within 1 s)");
   }
   if (repairs.repeated > 0) {
     texts.push_back(rows_text(repairs.repeated) +

@@ -28,7 +28,7 @@ namespace stillpoint::eval {
 /// Numbers of rows of a trajectory file that were skipped or moved. The ground truth of TUM fr2 and of EuRoC
 /// V1_02 repeats stamps; systems with several threads write poses out of order.
 struct RowRepairs {
-  std::size_t skipped = 0;    ///< without a pose: a value that is not finite, or the quaternion 0 0 0 0
+  std::size_t skipped = 0;    ///< without a pose: not finite, the quaternion 0 0 0 0, or no chain of /tf
   std::size_t repeated = 0;   ///< with the stamp of an earlier row, which is used instead
   std::size_t reordered = 0;  ///< up to `kMaxDisorder_s` earlier than a row before them; sorted by time
   std::size_t unstamped = 0;  ///< of a bag, with the stamp 0; the time of their recording is used

@@ -50,6 +50,35 @@ TEST(BagTrajectory, AChainOfTransformsIsInterpolatedAtTheFastestLink) {
   EXPECT_NEAR((poses[3].T_w_f.p - Eigen::Vector3d(0.3 + 0.5, 0.3, 0.0)).norm(), 0.0, 1e-12);
 }
 
+/// odom -> base at 10 Hz for 4 s, and map -> odom at these times and positions.
+eval::LoadedTrajectory with_map(std::initializer_list<std::pair<int, double>> map_y) {
+  const TemporaryFolder folder;
+  BagWriter writer(folder.path() / "tf.bag", ChunkCompression::kNone);
+  const std::uint32_t topic = writer.add_connection("/tf", "tf2_msgs/TFMessage");
+  const auto write = [&](const PoseMessage& message) {
+    writer.write(topic, message.header.stamp, serialize_transforms(std::span(&message, 1), writer.format()));
+  };
+  for (int i = 0; i <= 40; ++i) write(link("odom", "base", at_ms(100 * i), shifted(0.1 * i)));
+  for (const auto& [ms, y] : map_y) write(link("map", "odom", at_ms(ms), shifted(0.0, y)));
+  writer.finish();
+  return read_bag_trajectory(BagFile(folder.path() / "tf.bag"), "/tf:map.base");
+}
+
+TEST(BagTrajectory, ALinkThatNeverChangesHoldsForTheWholeChain) {
+  for (const eval::LoadedTrajectory& loaded : {with_map({{0, 2.0}}), with_map({{0, 2.0}, {3000, 2.0}})}) {
+    ASSERT_EQ(loaded.trajectory.poses.size(), 41U);
+    EXPECT_NEAR((loaded.trajectory.poses[40].T_w_f.p - Eigen::Vector3d(4.0, 2.0, 0.0)).norm(), 0.0, 1e-12);
+    EXPECT_TRUE(eval::repair_texts(loaded.repairs).empty());
+  }
+}
+
+TEST(BagTrajectory, TimesWithoutATransformOfAnotherLinkAreCounted) {
+  const eval::LoadedTrajectory loaded = with_map({{0, 1.0}, {1000, 1.5}, {3000, 2.0}});
+  EXPECT_EQ(loaded.trajectory.poses.size(), 12U);  // 0 to 1 s, and 3 s
+  EXPECT_EQ(loaded.repairs.skipped, 29U);
+  EXPECT_NE(eval::repair_texts(loaded.repairs).front().find("a link of /tf"), std::string::npos);
+}
+
 TEST(BagTrajectory, UnknownFramesListTheMovingOnes) {
   const TemporaryFolder folder;
   const BagFile bag(write_transforms(folder));
