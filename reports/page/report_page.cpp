@@ -189,7 +189,9 @@ constexpr std::string_view kScripts[] = {"vendor/uPlot.iife.min.js",
 std::vector<bench::StoredRun> previous_runs(const ReportSubject& subject) {
   if (subject.other_runs.empty()) return {};
   const std::string build = subject.other_runs.back().identity.build;
-  if (build == subject.runs.back().identity.build) return {};
+  if (std::ranges::any_of(subject.runs,
+                          [&](const bench::StoredRun& run) { return run.identity.build == build; }))
+    return {};
   std::vector<bench::StoredRun> runs = subject.other_runs;
   std::erase_if(runs, [&](const bench::StoredRun& run) { return run.identity.build != build; });
   return runs;

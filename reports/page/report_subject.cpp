@@ -165,15 +165,17 @@ ReportSubject report_subject(const bench::Store& store, const std::string& plan)
   subject.title = title_of(store, subject.plans);
   if (!plan.empty() && subject.plans.empty())
     static_cast<void>(store.plan_runs(plan));  // throws and lists the known plans
-  std::set<std::string> keys;
+  std::set<std::string> keys, planned_systems;
   for (const bench::StoredPlan& stored : subject.plans) {
     for (bench::StoredRun& run : store.plan_runs(stored.name)) {
+      planned_systems.insert(run.identity.system);
       if (keys.insert(run.key).second) subject.runs.push_back(std::move(run));
     }
   }
   for (bench::StoredRun& run : store.runs()) {
     if (keys.contains(run.key)) continue;
-    (subject.plans.empty() ? subject.runs : subject.other_runs).push_back(std::move(run));
+    const bool is_imported = plan.empty() && !planned_systems.contains(run.identity.system);
+    (is_imported ? subject.runs : subject.other_runs).push_back(std::move(run));
   }
   if (subject.runs.empty())
     throw InputError(store.file().string(),

@@ -45,7 +45,7 @@ struct ReportSubject {
 };
 
 /// All plans of the store or a single one; of each plan the runs of the newest build.
-/// @param plan name; empty: all plans, or all runs where there are no plans
+/// @param plan name; empty: all plans, and the runs of systems of which no plan has a run, as imported ones
 /// @throws InputError if the store has no such plan or no finished runs
 [[nodiscard]] ReportSubject report_subject(const bench::Store& store, const std::string& plan);
 

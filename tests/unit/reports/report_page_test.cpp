@@ -339,6 +339,26 @@ TEST(ReportSubject, DoesNotMixBuilds) {
             std::string::npos);
 }
 
+/// `stillpoint store import` adds runs that no plan has.
+TEST(ReportSubject, RunsOfSystemsInNoPlanAreShownBesideThePlans) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s";
+  fill_store(file, {.variant = "vo", .sequence = "a"});
+  const std::size_t planned = report_subject(bench::Store(file), "").runs.size();
+  {
+    bench::StoreWriter writer(file);
+    const bench::RunIdentity imported{
+        .system = "orb_slam", .variant = "orb_slam", .sequence = "a", .build = "1"};
+    static_cast<void>(writer.acquire(imported));
+    writer.finish(imported, {.metrics = {{"ate_rmse_m", "", "m", 3.0}}});
+  }
+  const bench::Store store(file);
+  const ReportSubject subject = report_subject(store, "");
+  EXPECT_EQ(subject.runs.size(), planned + 1);
+  EXPECT_EQ(report_tables(subject).front().rows.back().label, "orb_slam");
+  EXPECT_EQ(report_subject(store, "p").runs.size(), planned);
+}
+
 TEST(ReportSubject, ErrorListsTheKnownPlans) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
