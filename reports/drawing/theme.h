@@ -46,6 +46,12 @@ inline constexpr std::array<LineStyle, 6> kEstimates{{{{83, 133, 180}, {}},
                                                       {{147, 67, 233}, {9.0, 1.2, 3.0, 1.2}},
                                                       {{113, 53, 79}, {2.8, 1.0}}}};
 
+/// Of estimate `i`: beyond the number of colors, a color has the dashes of another one, so that 36 differ.
+constexpr LineStyle style_of_estimate(std::size_t i) {
+  constexpr std::size_t kCount = kEstimates.size();
+  return {kEstimates[i % kCount].color, kEstimates[(i + i / kCount) % kCount].dashes};
+}
+
 /// x, y and z of a pose, as usual in robotics.
 inline constexpr std::array<Color, 3> kPoseAxes{{{200, 30, 30}, {30, 140, 50}, {40, 80, 210}}};
 

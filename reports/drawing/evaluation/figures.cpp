@@ -416,8 +416,7 @@ std::vector<LegendRow> legend_rows(const FigureInput& input,
   std::vector<LegendRow> rows{
       {.style = theme::kTruth, .width = theme::kTruthWidth, .name = "ground truth", .numbers = {}}};
   for (std::size_t i = 0; i < input.runs.size(); ++i) {
-    LegendRow row{
-        .style = theme::kEstimates[i % theme::kEstimates.size()], .name = input.runs[i].name, .numbers = {}};
+    LegendRow row{.style = theme::style_of_estimate(i), .name = input.runs[i].name, .numbers = {}};
     if (i < errors.size()) {
       const std::optional<eval::Statistics>& found = errors[i];
       row.numbers = found ? std::vector<std::string>{short_number(found->rmse), short_number(found->median),

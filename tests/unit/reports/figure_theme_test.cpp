@@ -96,6 +96,16 @@ TEST(FigureTheme, LineStylesDifferWithoutColor) {
   }
 }
 
+TEST(FigureTheme, LinesOf36EstimatesDiffer) {
+  for (std::size_t i = 0; i < 36; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const theme::LineStyle a = theme::style_of_estimate(i);
+      const theme::LineStyle b = theme::style_of_estimate(j);
+      EXPECT_TRUE(a.color.red != b.color.red || a.dashes != b.dashes) << i << " " << j;
+    }
+  }
+}
+
 TEST(FigureTheme, LargeErrorsAreDarker) {
   for (int k = 0; k < 20; ++k)
     EXPECT_GE(luminance(error_color(k / 20.0, 1.0)), luminance(error_color((k + 1) / 20.0, 1.0)) - 1e-3) << k;
