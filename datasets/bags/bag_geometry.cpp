@@ -63,19 +63,36 @@ eval::LoadedTrajectory sorted_trajectory(std::vector<StampedPose> poses, eval::R
   return {.trajectory = {.frame = {}, .poses = std::move(poses)}, .repairs = repairs};
 }
 
-/// Positions in the tangent plane at the first fix; messages without a fix are skipped.
+bool has_position(const NavSatFixMessage& fix) {
+  return fix.status >= 0 && std::isfinite(fix.latitude_deg) && std::isfinite(fix.longitude_deg);
+}
+
+/// Positions in the tangent plane at the first fix; messages without a fix are skipped, and where others have
+/// an altitude those without one.
 class GnssPositions {
  public:
+  GnssPositions(const BagFile& bag, const std::string& topic) {
+    const auto has_fixes = [](const BagConnection& connection) { return connection.type == kNavSatFix; };
+    if (std::ranges::none_of(bag.connections(), has_fixes)) return;
+    for_each_message(bag, topic,
+                     [this](const BagConnection& connection, const SerializedMessage& message, Timestamp) {
+                       if (connection.type != kNavSatFix || has_altitudes_) return;
+                       const NavSatFixMessage fix = parse_nav_sat_fix(message);
+                       has_altitudes_ = has_position(fix) && std::isfinite(fix.altitude_m);
+                     });
+  }
+
   std::optional<Pose> pose_of(const NavSatFixMessage& fix) {
+    if (!has_position(fix) || (has_altitudes_ && !std::isfinite(fix.altitude_m))) return {};
     const eval::GeodeticPosition position{.latitude_deg = fix.latitude_deg,
                                           .longitude_deg = fix.longitude_deg,
-                                          .height_m = std::isfinite(fix.altitude_m) ? fix.altitude_m : 0.0};
-    if (fix.status < 0 || !std::isfinite(fix.latitude_deg) || !std::isfinite(fix.longitude_deg)) return {};
+                                          .height_m = has_altitudes_ ? fix.altitude_m : 0.0};
     if (!origin_) origin_ = position;
     return Pose{Eigen::Quaterniond::Identity(), eval::east_north_up(position, *origin_)};
   }
 
  private:
+  bool has_altitudes_ = false;
   std::optional<eval::GeodeticPosition> origin_;
 };
 
@@ -83,7 +100,7 @@ eval::LoadedTrajectory trajectory_of_topic(const BagFile& bag, const std::string
   std::vector<StampedPose> poses;
   eval::RowRepairs repairs;
   std::string frame;
-  GnssPositions positions;
+  GnssPositions positions(bag, topic);
   for_each_message(
       bag, topic, [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
         if (!is_trajectory_type(connection.type))

@@ -222,6 +222,14 @@ bool contains_any(const std::string& topic, std::initializer_list<std::string_vi
 /// "/camera" of "/camera/color/image_raw".
 std::string_view first_name(std::string_view topic) { return topic.substr(0, topic.find('/', 1)); }
 
+/// Of the names of two topics from their beginning: 2 of "/robot/front/color/image" and
+/// "/robot/front/depth/image".
+int common_names(std::string_view a, std::string_view b) {
+  int names = 0;
+  for (std::size_t i = 1; i < std::min(a.size(), b.size()) && a[i] == b[i]; ++i) names += a[i] == '/' ? 1 : 0;
+  return names;
+}
+
 /// All connections of one topic.
 struct TopicSummary {
   std::string topic;
@@ -274,8 +282,9 @@ int color_rank(const TopicSummary& topic) {
   return rank;
 }
 
-int depth_rank(const TopicSummary& topic) {
-  int rank = topic.type == kImage ? 1 : 0;
+/// Depth of the camera of the color image comes first.
+int depth_rank(const TopicSummary& topic, const std::string& color) {
+  int rank = 16 * common_names(topic.topic, color) + (topic.type == kImage ? 1 : 0);
   if (contains_any(topic.topic, {"aligned", "registered"})) rank += 4;
   if (contains_any(topic.topic, {"depth"})) rank += 2;
   return rank;
@@ -396,7 +405,10 @@ BagTopics select_topics(const BagFile& bag, std::span<const std::string> request
   for (const std::string& request : requested) {
     if (request.starts_with("color=")) selected = with_request(selected, request, topics);
   }
-  selected.depth = best_topic(topics, measures_depth, depth_rank);
+  const auto rank_of_depth = [&selected](const TopicSummary& topic) {
+    return depth_rank(topic, selected.color);
+  };
+  selected.depth = best_topic(topics, measures_depth, rank_of_depth);
   selected.truth = best_topic(topics, names_reference, [](const TopicSummary&) { return 0; });
   selected = with_imu(selected, topics);
   for (const std::string& request : requested) selected = with_request(selected, request, topics);
@@ -405,7 +417,7 @@ BagTopics select_topics(const BagFile& bag, std::span<const std::string> request
     selected.unclear_depth = best_topic(
         topics,
         [](const TopicSummary& topic) { return topic.image == ImageContent::kDepth && !is_infrared(topic); },
-        depth_rank);
+        rank_of_depth);
   }
   if (selected.color.empty())
     throw InputError(bag.path().string(),

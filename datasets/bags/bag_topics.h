@@ -60,8 +60,9 @@ struct BagTopics {
 /// Selects topics by type and name.
 ///
 /// Color: an image with a color or gray encoding; names with "color" or "rgb" are preferred to others, and
-/// those of infrared and fisheye cameras come last. Depth: an image with a depth encoding; names with
-/// "aligned" or "registered" are preferred. Of equal ones, uncompressed images are preferred. IMU: one
+/// those of infrared and fisheye cameras come last. Depth: an image with
+/// a depth encoding; those whose names begin like the color topic are preferred, then those with "aligned" or
+/// "registered". Of equal ones, uncompressed images are preferred. IMU: one
 /// topic for both sensors, or one with "gyro" and one with "accel" in its name; those that begin with the
 /// same name as the color topic are preferred. Ground truth: poses whose topic names a reference system.
 /// @param requested "ROLE=TOPIC" with a role of `BagTopics`, overrides the selection; "ROLE=" selects none

@@ -173,6 +173,21 @@ TEST(BagSequence, ImagesOf16BitsThatNoNameTellsAreReported) {
   EXPECT_TRUE(has_note(with_range({"depth=/range/image"}), "depth /range/image"));
 }
 
+TEST(BagSequence, DepthIsThatOfTheCameraOfTheColorImage) {
+  const auto topics_of_bag = [](std::vector<std::string> topics) {
+    const auto add = [](BagBuilder& bag) {
+      for (const char* const camera : {"/front", "/rear"}) {
+        bag.image(std::string(camera) + "/color/image_raw", at_ms(0), "rgb8");
+        bag.image(std::string(camera) + "/depth/image_raw", at_ms(0), "16UC1");
+      }
+    };
+    return info_of_bag(add, std::move(topics)).notes.front();
+  };
+  EXPECT_EQ(topics_of_bag({"color=/rear/color/image_raw"}),
+            "topics: color /rear/color/image_raw, depth /rear/depth/image_raw");
+  EXPECT_EQ(topics_of_bag({}), "topics: color /front/color/image_raw, depth /front/depth/image_raw");
+}
+
 /// Focal length and center of the CameraInfo are those of the full image of 16x12 pixels.
 TEST(BagSequence, RegionOfInterestAndBinningChangeTheCalibration) {
   const CameraInfoMessage full{.header = {},

@@ -151,6 +151,34 @@ TEST(BagTrajectory, FixesOfAGnssReceiverBecomePositionsInAPlane) {
   }
 }
 
+/// NaN is the altitude of fixes in two dimensions.
+TEST(BagTrajectory, FixesWithoutAltitudeAreSkippedWhereOthersHaveOne) {
+  const auto heights_of = [](std::initializer_list<double> altitudes) {
+    const TemporaryFolder folder;
+    BagWriter writer(folder.path() / "gnss.bag", ChunkCompression::kNone);
+    const std::uint32_t topic = writer.add_connection("/fix", "sensor_msgs/NavSatFix");
+    for (int i = 0; const double altitude_m : altitudes) {
+      const Timestamp t = at_ms(100 * i++);
+      const NavSatFixMessage fix{.header = {.stamp = t, .frame = "gps"},
+                                 .status = 0,
+                                 .latitude_deg = 48.0,
+                                 .longitude_deg = 11.0,
+                                 .altitude_m = altitude_m};
+      writer.write(topic, t, serialize(fix, writer.format()));
+    }
+    writer.finish();
+    std::vector<double> heights;
+    for (const StampedPose& pose :
+         read_bag_trajectory(BagFile(folder.path() / "gnss.bag"), "/fix").trajectory.poses)
+      heights.push_back(pose.T_w_f.p.z());
+    return heights;
+  };
+  const std::vector<double> heights = heights_of({NAN, 500.0, NAN, 501.0});
+  ASSERT_EQ(heights.size(), 2U);
+  EXPECT_NEAR(heights[1], 1.0, 1e-6);
+  EXPECT_EQ(heights_of({NAN, NAN, NAN}).size(), 3U);
+}
+
 TEST(BagTrajectory, CovariancesOfOdometryAreRead) {
   const TemporaryFolder folder;
   BagWriter writer(folder.path() / "odom.bag", ChunkCompression::kNone);
