@@ -119,6 +119,7 @@ py::dict timing_columns(const Store& store, const StoredRun& run) {
 }
 
 void bind_store(py::module_& m) {
+  // Reading runs is a transaction of the connection, which threads share: one at a time, with the interpreter.
   py::class_<Store>(m, "Store", "A store of results, open for reading; it may be written at the same time.")
       .def(py::init<const std::filesystem::path&>(), py::arg("path"),
            "Raises InputError if there is none, it is damaged, or was written by a newer version.")
@@ -129,10 +130,8 @@ void bind_store(py::module_& m) {
             return store.runs({system, variant, sequence, build, kind});
           },
           py::arg("system") = "", py::arg("variant") = "", py::arg("sequence") = "", py::arg("build") = "",
-          py::arg("kind") = "", "Completed runs in the order of their start; empty arguments match all.",
-          ReleaseGil())
-      .def("plan_runs", &Store::plan_runs, py::arg("plan"), "The completed runs of a plan, in its order.",
-           ReleaseGil())
+          py::arg("kind") = "", "Completed runs in the order of their start; empty arguments match all.")
+      .def("plan_runs", &Store::plan_runs, py::arg("plan"), "The completed runs of a plan, in its order.")
       .def(
           "plans",
           [](const Store& store) {

@@ -3,6 +3,7 @@
 
 import io
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pandas
@@ -53,6 +54,15 @@ def test_columns_are_arrays_with_nan_where_a_run_has_no_metric(results):
     for name in sparse:
         assert np.array_equal(~np.isnan(columns[name]), [name in run.metrics for run in results.runs()])
     assert sparse  # those of inertial data
+
+
+def test_threads_may_share_a_store(results):
+    def read(_):
+        runs = [run for _ in range(20) for run in results.runs()]
+        return len(runs), sum(len(results.trajectory(run)) for run in runs[:4])
+
+    with ThreadPoolExecutor(8) as pool:
+        assert len(set(pool.map(read, range(8)))) == 1
 
 
 def test_trajectories_have_the_stored_error(results):
