@@ -119,7 +119,8 @@ py::dict timing_columns(const Store& store, const StoredRun& run) {
 }
 
 void bind_store(py::module_& m) {
-  // Reading runs is a transaction of the connection, which threads share: one at a time, with the interpreter.
+  // Reading runs is a transaction of the connection, which threads share: one at a time, with the
+  // interpreter.
   py::class_<Store>(m, "Store", "A store of results, open for reading; it may be written at the same time.")
       .def(py::init<const std::filesystem::path&>(), py::arg("path"),
            "Raises InputError if there is none, it is damaged, or was written by a newer version.")
