@@ -31,6 +31,15 @@
 namespace stillpoint::bench {
 namespace {
 
+/// A tenth of the poses without a covariance is more than a first pose that is known exactly.
+void warn_of_missing(const std::vector<eval::StampedCovariance>& rows, const std::string& file) {
+  const auto missing = static_cast<std::size_t>(std::ranges::count_if(
+      rows, [](const eval::StampedCovariance& row) { return row.position.isZero(0.0); }));
+  if (10 * missing > rows.size())
+    spdlog::warn("{}: {} of {} poses have no covariance less than 1 ms from their stamp", file, missing,
+                 rows.size());
+}
+
 /// The poses with their covariances; nullopt without any.
 std::optional<eval::CovarianceScore> covariance_score_of(const EvalArguments& arguments, const Trajectory& gt,
                                                          const PoseFile& file) {
@@ -59,6 +68,8 @@ std::optional<eval::CovarianceScore> covariance_score_of(const EvalArguments& ar
         "{}: no covariance was evaluated: none is positive definite, has a ground-truth pose and is 3 s "
         "later than the first pose",
         file.path);
+  } else {
+    warn_of_missing(rows, file.path);
   }
   return score;
 }
