@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -95,7 +96,37 @@ int parse_processor(std::string_view text, const std::string& cores) {
   return number;
 }
 
+/// The file in the folder of the plan, if it is there, else in the working folder.
+/// @throws InputError if it is in neither
+std::string file_of_plan(const std::string& file, const BenchPlan& plan) {
+  namespace fs = std::filesystem;
+  const fs::path beside = (fs::path(plan.path).parent_path() / file).lexically_normal();
+  std::error_code ignored;
+  if (fs::exists(beside, ignored)) return beside.string();
+  if (fs::exists(file, ignored)) return file;
+  throw InputError(file, "is neither in the folder of the plan nor in the working folder; correct the path");
+}
+
+/// A recorded sequence: a name, or the path of a folder in the folder of the plan, if it is there, else in
+/// the working folder.
+std::string sequence_of_plan(const std::string& name, const BenchPlan& plan) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(plan.path).parent_path();
+  std::error_code ignored;
+  const bool is_beside =
+      name.find('/') != std::string::npos && !folder.empty() && fs::exists(folder / name, ignored);
+  return is_beside ? (folder / name).string() : name;
+}
+
 }  // namespace
+
+std::string config_of_plan(const BenchPlan& plan, const std::string& name) {
+  std::vector<std::string> parts;
+  std::istringstream names(name);
+  for (std::string part; std::getline(names, part, '+');)
+    parts.push_back(part.ends_with(".toml") ? file_of_plan(part, plan) : part);
+  return fmt::format("{}", fmt::join(parts, "+"));
+}
 
 std::vector<int> parse_cpu_list(const std::string& cores) {
   std::vector<int> processors;
@@ -145,11 +176,17 @@ void require_settings(const BenchPlan& plan) {
   }
 }
 
+/// The config of a variant of the plan with further settings.
+OdometryConfig config_of(const BenchPlan& plan, const std::string& variant,
+                         const std::vector<std::string>& settings) {
+  return load_config({config_of_plan(plan, plan.base), config_of_plan(plan, variant), settings});
+}
+
 /// @param key of the list in the plan
 void require_configs(const BenchPlan& plan, const std::string& key,
                      const std::vector<std::string>& variants) {
   at_place(plan, key, [&] {
-    for (const std::string& variant : variants) static_cast<void>(load_config({plan.base, variant, {}}));
+    for (const std::string& variant : variants) static_cast<void>(config_of(plan, variant, {}));
   });
 }
 
@@ -160,7 +197,7 @@ void require_effect(const BenchPlan& plan, const std::string& key, const std::st
     variants.insert(variants.end(), group->begin(), group->end());
   std::string_view requirement;
   for (const std::string& variant : variants) {
-    requirement = missing_requirement(key, load_config({plan.base, variant, plan.config_settings}));
+    requirement = missing_requirement(key, config_of(plan, variant, plan.config_settings));
     if (requirement.empty()) return;
   }
   if (variants.empty()) return;
@@ -206,17 +243,10 @@ void require_mode(const BenchPlan& plan) {
                                                        plan.mode, fmt::join(kRunModes, "\", \"")));
 }
 
-/// The description in the folder of the plan, if it is there, else in the working folder.
-/// @throws InputError if it is in neither
+/// A description: a name, or a file as `file_of_plan`.
 std::string description_of_plan(const std::string& name, const BenchPlan& plan) {
-  namespace fs = std::filesystem;
   const std::string file = parse_system_name(name).file;
-  if (!file.ends_with(".toml")) return name;
-  const fs::path beside = (fs::path(plan.path).parent_path() / file).lexically_normal();
-  std::error_code ignored;
-  if (fs::exists(beside, ignored)) return beside.string() + name.substr(file.size());
-  if (fs::exists(file, ignored)) return name;
-  throw InputError(file, "is neither in the folder of the plan nor in the working folder; correct the path");
+  return file.ends_with(".toml") ? file_of_plan(file, plan) + name.substr(file.size()) : name;
 }
 
 std::vector<std::string> descriptions_of(const BenchPlan& plan) {
@@ -315,7 +345,7 @@ void require_ablation_base(const BenchPlan& plan) {
 }
 
 void validate_plan(const BenchPlan& plan) {
-  static_cast<void>(at_place(plan, "base", [&] { return load_config({plan.base, "", {}}); }));
+  static_cast<void>(at_place(plan, "base", [&] { return config_of(plan, "", {}); }));
   require_settings(plan);
   require_configs(plan, "variants", plan.variants);
   require_configs(plan, "rendered.variants", plan.rendered.variants);
@@ -349,6 +379,7 @@ BenchPlan load_plan(const std::string& name, const std::vector<std::string>& sys
   plan.text = source.text;
   if (plan.title.empty()) plan.title = plan.name;
   plan.systems = systems.empty() ? at_place(plan, "systems", [&] { return descriptions_of(plan); }) : systems;
+  for (std::string& sequence : plan.recorded.sequences) sequence = sequence_of_plan(sequence, plan);
   validate_plan(plan);
   return plan;
 }

@@ -46,7 +46,8 @@ void visit_fields(Visitor&& field, Config& config) {
 /// Recorded sequences.
 struct RecordedGroup {
   std::vector<std::string> sequences;  ///< registered names, names in the data folder, globs over both, or
-                                       ///< paths of folders (with a slash)
+                                       ///< paths of folders (with a slash), relative to the plan, else to
+                                       ///< the working folder
   std::vector<std::string> variants;   ///< replaces `BenchPlan::variants` if not empty
   bool required = true;                ///< false: sequences that are not available are skipped
 };
@@ -83,7 +84,7 @@ inline constexpr std::string_view kExpectLoss = "lose";
 
 struct BenchPlan {
   std::string title;
-  std::string base = "stillpoint";    ///< config to which the variants are applied
+  std::string base = "stillpoint";    ///< config to which the variants are applied; see `config_of_plan`
   std::vector<std::string> variants;  ///< of this odometry
   std::string ablation_base;          ///< the variant that the others are compared with; empty: no ablation
   std::vector<std::string> systems;  ///< external systems: names, or files, relative to the plan, else to the
@@ -153,6 +154,12 @@ void visit_fields(Visitor&& field, Config& config) {
 /// unknown name (with the nearest one), a value out of range, and a seed, variant, system, protocol or sweep
 /// value that is listed twice
 [[nodiscard]] BenchPlan load_plan(const std::string& name, const std::vector<std::string>& systems = {});
+
+/// The base or a variant of a plan as `load_config` finds it. A part that ends in ".toml" is a file relative
+/// to the plan, else to the working folder.
+/// @param name as in the plan, parts joined by "+"
+/// @throws InputError if a file is in neither folder
+[[nodiscard]] std::string config_of_plan(const BenchPlan& plan, const std::string& name);
 
 /// Parses a CPU list such as "0,2-3".
 /// @throws InputError if it is malformed, or the machine has no such processor

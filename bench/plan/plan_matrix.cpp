@@ -136,7 +136,8 @@ class PlanExpander {
     if (!identity.axis.empty() && !identity.axis.starts_with(kSynthPrefix)) {
       settings.push_back(fmt::format("{}={}", identity.axis, identity.axis_value));
     }
-    ConfigRequest config{matrix_.plan.base, variant, settings};
+    ConfigRequest config{config_of_plan(matrix_.plan, matrix_.plan.base),
+                         config_of_plan(matrix_.plan, variant), settings};
     identity.variant = variant;
     identity.build = build_;
     identity.config_hash = hash_of(config, identity);
