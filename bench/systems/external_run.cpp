@@ -347,8 +347,7 @@ std::string ExternalRun::manifest(const RunRequest& request) const {
 
 RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& process) const {
   const bool is_exported = system_.layout != ExportLayout::kAsIs;
-  if ((is_exported && export_state(export_path(request, system_.layout)) == ExportState::kChanged) ||
-      export_state(request.sequence) == ExportState::kChanged)
+  if (is_exported && export_state(export_path(request, system_.layout)) == ExportState::kChanged)
     return failed(
         Outcome::kBadData,
         "files of the sequence were changed during the run; let programs write to {out} only, not to "

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <optional>
 #include <set>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "bench/process/child_process.h"
 #include "bench/systems/cached_export.h"
 #include "bench/systems/external_run.h"
+#include "bench/systems/file_states.h"
 #include "bench/systems/module_times.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
@@ -82,29 +82,12 @@ RunRequest smoke_run(const ExternalSystem& system, const fs::path& work) {
 
 // ---- Files that the program changes.
 
-/// Size and time of a file.
-using FileState = std::pair<std::uintmax_t, fs::file_time_type>;
-using FileStates = std::map<fs::path, FileState>;
-
 /// A folder in which a program must not write.
 struct WatchedFolder {
   fs::path path;
   int depth = 0;           ///< of subfolders
   bool is_shared = false;  ///< other programs may write there, too
 };
-
-void add_files(FileStates& states, const fs::path& folder, int depth, const fs::path& excluded) {
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    std::error_code ignored;
-    if (entry->path() == excluded || entry->path().filename() == "__pycache__") continue;
-    if (entry->is_directory(ignored) && !entry->is_symlink(ignored)) {
-      if (depth > 0) add_files(states, entry->path(), depth - 1, excluded);
-    } else if (entry->is_regular_file(ignored)) {
-      states[entry->path()] = {entry->file_size(ignored), entry->last_write_time(ignored)};
-    }
-  }
-}
 
 std::vector<WatchedFolder> watched_folders(const ExternalSystem& system, const fs::path& sequence,
                                            const fs::path& folder) {
@@ -125,25 +108,6 @@ FileStates files_of(const std::vector<WatchedFolder>& folders, bool is_shared, c
     if (folder.is_shared == is_shared) add_files(states, fs::absolute(folder.path), folder.depth, out);
   }
   return states;
-}
-
-/// New and changed files.
-std::vector<fs::path> written_files(const FileStates& before, const FileStates& after) {
-  std::vector<fs::path> changed;
-  for (const auto& [path, state] : after) {
-    const auto known = before.find(path);
-    if (known == before.end() || known->second != state) changed.push_back(path);
-  }
-  return changed;
-}
-
-/// New, changed and removed files.
-std::vector<fs::path> changed_files(const FileStates& before, const FileStates& after) {
-  std::vector<fs::path> changed = written_files(before, after);
-  for (const auto& [path, state] : before) {
-    if (!after.contains(path)) changed.push_back(path);
-  }
-  return changed;
 }
 
 /// Files that a running process has open: those of other programs, as the system does not run.

@@ -209,6 +209,56 @@ TEST(ExternalSystem, AChangeOfTheSequenceIsAnErrorAndReachesNoLaterRun) {
   EXPECT_EQ(inertial, 1u);
 }
 
+/// A copy of the rendered sequence, as a recording of a user, and a plan of systems that read its files.
+ProgramResult bench_copy(const TemporaryFolder& folder, const std::string& systems) {
+  if (!fs::exists(folder.path() / "copy"))
+    fs::copy(rendered_sequence(), folder.path() / "copy", fs::copy_options::recursive);
+  folder.write("plan.toml", "systems = [" + systems + "]\n[recorded]\nsequences = [\"./copy\"]\n");
+  return run_here(folder, {"bench", (folder.path() / "plan.toml").string(), "--store", store_of(folder),
+                           "--out", (folder.path() / "out").string()});
+}
+
+TEST(ExternalSystem, AChangeOfARecordingIsAnErrorAndStopsLaterRuns) {
+  const TemporaryFolder folder;
+  folder.write("harmful.toml", "name = \"harmful\"\nlayout = \"as_is\"\ncommand = [\"sh\", \"-c\", \"'" +
+                                   std::string(kReplay) +
+                                   "' --error 0.01 run '{sequence}' --out '{out}' && "
+                                   "rm '{sequence}/request.toml' && touch '{sequence}/new.txt'\"]\n");
+  write_replay(folder, "replay", "0.01", "layout = \"as_is\"\n");
+  const ProgramResult result = bench_copy(folder, "\"harmful.toml\", \"replay.toml\"");
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const std::vector<bench::StoredRun> runs = bench::Store(folder.path() / "store.sqlite").runs();
+  ASSERT_EQ(runs.size(), 2u);
+  for (const bench::StoredRun& run : runs) {
+    EXPECT_EQ(run.outcome, bench::Outcome::kBadData) << run.identity.system;
+    EXPECT_NE(run.detail.find("copy/new.txt new, copy/request.toml removed"), std::string::npos)
+        << run.detail;
+    EXPECT_FALSE(bench::metric_value(run, "ate_m")) << run.identity.system;
+  }
+}
+
+TEST(ExternalSystem, ASingleRunThatChangesARecordingIsAnError) {
+  const TemporaryFolder folder;
+  fs::copy(rendered_sequence(), folder.path() / "copy", fs::copy_options::recursive);
+  folder.write("touch.toml",
+               "name = \"touch\"\nlayout = \"as_is\"\n"
+               "command = [\"touch\", \"{sequence}/request.toml\"]\n");
+  const ProgramResult result =
+      run_here(folder, {"systems", "run", (folder.path() / "touch.toml").string(),
+                        (folder.path() / "copy").string(), "--out", (folder.path() / "single").string()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.out.find("bad_data, files of the sequence were changed"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("copy/request.toml changed"), std::string::npos) << result.out;
+}
+
+TEST(ExternalSystem, AFileBesideARecordingIsNoListOfItsFiles) {
+  const TemporaryFolder folder;
+  folder.write("copy.files", "notes of the user\n");
+  write_replay(folder, "replay", "0.01", "layout = \"as_is\"\n");
+  EXPECT_EQ(bench_copy(folder, "\"replay.toml\"").exit_code, 0);
+  EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kOk) << run_of(folder).detail;
+}
+
 TEST(ExternalSystem, IsExecutedOnTheFirstFrames) {
   const TemporaryFolder folder;
   write_replay(folder, "replay", "0.001");

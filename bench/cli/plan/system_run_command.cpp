@@ -19,6 +19,7 @@
 #include "bench/profile/meters/run_monitor.h"
 #include "bench/record/output_folder.h"
 #include "bench/systems/external_run.h"
+#include "bench/systems/file_states.h"
 #include "core/base/error.h"
 #include "reports/tables/text_format.h"
 
@@ -180,9 +181,12 @@ int run_system(const SystemRunArguments& arguments) {
                            .time_limit_s = plan.time_limit_s,
                            .memory_limit_mb = plan.memory_limit_mb};
   fs::remove_all(request.work);
+  SequenceWatch watch;
+  static_cast<void>(watch.changes_of(sequence));
   const MeasuredProcess measured = execute_limited(external.command(request), plan, frames_of(request));
   if (interrupt_requested()) return kExitInterrupted;
-  RunOutcome outcome = outcome_of_run(external, request, measured.process, plan);
+  RunOutcome outcome =
+      unless_changed(outcome_of_run(external, request, measured.process, plan), watch.changes_of(sequence));
   for (Metric& metric : measured_metrics({.device = measured.device}))
     outcome.metrics.push_back(std::move(metric));
   std::vector<OutputFile> files = {{"result.json", result_text(planned.identity, outcome)},

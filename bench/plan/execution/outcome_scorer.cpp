@@ -126,6 +126,18 @@ RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request, c
   return outcome;
 }
 
+RunOutcome unless_changed(RunOutcome outcome, const std::string& changes) {
+  if (changes.empty()) return outcome;
+  RunOutcome changed{
+      .outcome = Outcome::kBadData,
+      .detail =
+          "files of the sequence were changed during the run: " + changes +
+          "; restore them; a program may write to {out} only, not to the sequence, which other runs read",
+      .manifest = std::move(outcome.manifest)};
+  changed.attachments["log"] = std::move(outcome.attachments["log"]);
+  return changed;
+}
+
 void OutcomeScorer::start(std::size_t run, const ProcessResult& process, std::function<RunOutcome()> score) {
   scored_.push_back(std::async(std::launch::async, [this, run, process, score = std::move(score)] {
     name_this_thread("scoring");

@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <string>
 
 #include "bench/plan/bench_plan.h"
 #include "bench/process/child_process.h"
@@ -19,6 +20,11 @@ namespace stillpoint::bench {
 /// usage of the process and the metrics of the plan's evaluation protocols.
 [[nodiscard]] RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request,
                                         const ProcessResult& end, const BenchPlan& plan);
+
+/// The outcome `bad_data`, without results, if files of the sequence were changed during the run.
+/// @param outcome as if nothing had changed
+/// @param changes of `SequenceWatch`
+[[nodiscard]] RunOutcome unless_changed(RunOutcome outcome, const std::string& changes);
 
 /// A run that is ready to be stored.
 struct ScoredRun {

@@ -20,7 +20,9 @@
 #include "bench/run/frame_cache.h"
 #include "bench/run/odometry_run.h"
 #include "bench/systems/external_run.h"
+#include "bench/systems/file_states.h"
 #include "bench/systems/slam_system.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 
@@ -34,10 +36,10 @@ double time_of_frame(const std::filesystem::path& folder, int index) {
   const auto stream = datasets::open_sequence(folder);
   const std::vector<Timestamp>& times = stream->info().frame_times;
   if (static_cast<std::size_t>(index) >= times.size()) {
-    throw InputError("seeds",
-                     fmt::format("seed number {} begins {} frames later, but the sequence has {} frames; "
-                                 "use fewer seeds",
-                                 index + 1, index, times.size()));
+    throw InputError(
+        "seeds",
+        fmt::format("seed number {} begins {} later, but the sequence has {}; use fewer seeds", index + 1,
+                    counted(static_cast<std::size_t>(index), "frame"), counted(times.size(), "frame")));
   }
   constexpr double kRounding_s = 2e-6;  // of the option --start
   return seconds_between(times.front(), times[static_cast<std::size_t>(index)]) - kRounding_s;
@@ -118,8 +120,8 @@ HarnessProfile with_run(HarnessProfile profile, const ProcessResult& process, co
 }
 
 std::string profile_text(const HarnessProfile& profile) {
-  std::string text = fmt::format("{} runs, {} at once, {:.1f} s; time of the workers:\n", profile.runs,
-                                 profile.workers, profile.wall_s);
+  std::string text = fmt::format("{}, {} at once, {:.1f} s; time of the workers:\n",
+                                 counted(profile.runs, "run"), profile.workers, profile.wall_s);
   for (const Part& part : kWorkerParts) {
     if (profile.*part.seconds > 0.0) text += profile_line(profile, part.text, profile.*part.seconds);
   }
@@ -231,7 +233,7 @@ class PlanRunner {
 
   void wait_for_other_worker() {
     if (!wait_reported_ && hooks_.on_step) {
-      hooks_.on_step("wait for " + std::to_string(leased_by_other_.size()) + " runs of another worker");
+      hooks_.on_step("wait for " + counted(leased_by_other_.size(), "run") + " of another worker");
     }
     wait_reported_ = true;
     poll(nullptr, 0, kLeasePollMs);
@@ -276,11 +278,20 @@ class PlanRunner {
     try {
       const fs::path folder = folders_.find(matrix_.runs[run].sequence);
       if (folder.empty()) return;  // the rendering was stopped
+      require_unchanged(folder);
       prepare(run, folder);
       if (acquire(run)) start(run, folder);
     } catch (const InputError& error) {
       store_bad_data(run, error);
     }
+  }
+
+  /// A program may have written into a sequence that later runs read.
+  void require_unchanged(const fs::path& folder) {
+    const std::string changes = sequences_.changes_of(folder);
+    if (!changes.empty())
+      throw InputError(folder.string(), "was changed since the first run: " + changes +
+                                            "; restore it, and run the command again");
   }
 
   /// Requests the lease of a run; counts or postpones the run if it is not granted.
@@ -367,8 +378,9 @@ class PlanRunner {
       fs::remove_all(request.work);
       return;
     }
-    scorer_.start(run, end, [this, run, end, request] {
-      return outcome_of_run(system_of(run), request, end, matrix_.plan);
+    const std::string changes = sequences_.changes_of(request.sequence);
+    scorer_.start(run, end, [this, run, end, request, changes] {
+      return unless_changed(outcome_of_run(system_of(run), request, end, matrix_.plan), changes);
     });
     while (is_timed(run) && scorer_.pending() > 0) store_next();
   }
@@ -398,6 +410,7 @@ class PlanRunner {
   const PlanHooks& hooks_;
   ProcessPool pool_;
   SequenceFolders folders_;
+  SequenceWatch sequences_;
   OwnOdometry own_;
   std::vector<ExternalRun> external_;
   int jobs_;
