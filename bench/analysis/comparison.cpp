@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bench/model/stored_run.h"
+#include "core/base/counted.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -204,14 +205,14 @@ ChangeClass Comparison::result() const {
 
 std::string count_sentence(const Comparison& comparison) {
   std::string text = fmt::format(
-      "{} pair{} of runs: {} compared ({} with bit-equal trajectories), {} failed at base, {} at head ({} "
+      "{} of runs: {} compared ({} with bit-equal trajectories), {} failed at base, {} at head ({} "
       "newly "
       "failed, {} newly succeeded)",
-      comparison.pairs, comparison.pairs == 1 ? "" : "s", comparison.compared, comparison.bit_equal,
-      comparison.base_failed, comparison.head_failed, comparison.newly_failed, comparison.newly_succeeded);
+      counted(comparison.pairs, "pair"), comparison.compared, comparison.bit_equal, comparison.base_failed,
+      comparison.head_failed, comparison.newly_failed, comparison.newly_succeeded);
   if (comparison.only_in_base + comparison.only_in_head > 0)
-    text += fmt::format("; {} runs of base and {} of head have no counterpart", comparison.only_in_base,
-                        comparison.only_in_head);
+    text += fmt::format("; {} of base and {} of head have no counterpart",
+                        counted(comparison.only_in_base, "run"), comparison.only_in_head);
   return text;
 }
 

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/counted.h"
+
 namespace stillpoint::bench {
 namespace {
 
@@ -115,7 +117,7 @@ std::string duration_text(double seconds) {
 }
 
 std::string rate_text(std::size_t runs, double seconds) {
-  return fmt::format("{} runs in {}, {:.3g} runs per minute", runs, duration_text(seconds),
+  return fmt::format("{} in {}, {:.3g} runs per minute", counted(runs, "run"), duration_text(seconds),
                      60.0 * static_cast<double>(runs) / std::max(seconds, 1e-3));
 }
 

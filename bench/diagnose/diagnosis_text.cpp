@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "core/base/counted.h"
+
 namespace stillpoint::bench {
 namespace {
 
@@ -24,12 +26,13 @@ std::string title(const Diagnosis& diagnosis) {
   const char* const measure = diagnosis.measure == ErrorMeasure::kTruth
                                   ? "error (ATE; frames without a pose count with the spread of the truth)"
                                   : "inconsistency (innovations of images and IMU; no ground truth)";
-  std::string text = fmt::format("{}: {} frames ({:.1f} s), {}: {}", diagnosis.sequence, diagnosis.frames,
+  std::string text = fmt::format("{}: {} ({:.1f} s), {}: {}", diagnosis.sequence,
+                                 counted(static_cast<std::size_t>(diagnosis.frames), "frame"),
                                  diagnosis.seconds, measure, error_text(diagnosis, diagnosis.error));
   if (diagnosis.corrected != diagnosis.error)
     text += fmt::format(", corrected {}", error_text(diagnosis, diagnosis.corrected));
-  return text +
-         fmt::format("; {}{} trials\n", diagnosis.finished_run ? "the given run and " : "", diagnosis.trials);
+  return text + fmt::format("; {}{}\n", diagnosis.finished_run ? "the given run and " : "",
+                            counted(static_cast<std::size_t>(diagnosis.trials), "trial"));
 }
 
 /// A line of the others that are refuted or not, with their effects; a large one that did not count is not

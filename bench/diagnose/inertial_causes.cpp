@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/diagnose/evidence/accelerometer_axes.h"
+#include "core/base/counted.h"
 #include "core/geometry/so3.h"
 #include "datasets/sequence_plausibility.h"
 
@@ -377,8 +378,10 @@ std::vector<Cause> sample_causes(const datasets::SequenceInfo& info) {
         std::tuple("accel_saturated", "accelerometer saturated", &ImuSample::accel_b)}) {
     const std::size_t clipped = clipped_samples(samples, sensor);
     if (clipped > kMostClippedSamples)
-      causes.push_back(sample_cause(
-          id, name, fmt::format("{} samples have the largest value of their axis", clipped), 100.0));
+      causes.push_back(sample_cause(id, name,
+                                    fmt::format("{} with the largest value of the axis",
+                                                counted(static_cast<std::size_t>(clipped), "sample")),
+                                    100.0));
   }
   return causes;
 }

@@ -18,6 +18,7 @@
 #include "bench/store/store.h"
 #include "bench/systems/slam_system.h"
 #include "core/base/content_hash.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
@@ -185,15 +186,14 @@ PlanMatrix job_matrix(const fs::path& folder, const std::vector<std::string>& ke
   if (remaining.empty()) return matrix;
   std::string build = eval::read_text_file(folder / kBuildFile);
   while (build.ends_with('\n')) build.pop_back();
-  throw InputError(
-      folder.string(),
-      build != build_name()
-          ? fmt::format("was written by build {}, this program is build {}; install the same", build,
-                        build_name())
-          : fmt::format(
-                "{} runs, e.g. {}, are not those of the plan on this machine; its recorded sequences, "
-                "configs or system files differ",
-                remaining.size(), *remaining.begin()));
+  throw InputError(folder.string(),
+                   build != build_name()
+                       ? fmt::format("was written by build {}, this program is build {}; install the same",
+                                     build, build_name())
+                       : fmt::format("has {} (e.g. {}) that the plan on this machine does not have; its "
+                                     "recorded sequences, configs or "
+                                     "system files differ",
+                                     counted(remaining.size(), "run"), *remaining.begin()));
 }
 
 PlanReport run_task(const fs::path& folder, int task, int jobs, const PlanHooks& hooks) {

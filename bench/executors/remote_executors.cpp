@@ -13,6 +13,7 @@
 
 #include "bench/process/child_process.h"
 #include "bench/record/output_folder.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
@@ -61,7 +62,8 @@ class SshHosts {
     std::string logins;
     for (const Host& host : hosts_) logins += fmt::format("{}/{}\n", host.tasks, host.name);
     write_files(folder_, {{"logins", logins}});
-    report(fmt::format("{} tasks on {} hosts", tasks, hosts_.size()));
+    report(fmt::format("{} on {}", counted(static_cast<std::size_t>(tasks), "task"),
+                       counted(hosts_.size(), "host")));
     Words arguments = {"--will-cite",      "--retries", "2",          "--sshloginfile",
                        folder_ / "logins", "--ssh",     ssh_command()};
     // parallel gives these words to a shell on both sides; all of them are plain.
@@ -247,7 +249,8 @@ class SlurmJobs {
     const std::string array = submit(
         arguments, {folder_ / "task.sh", executable_path(), folder_ / "job", std::to_string(options_.jobs)});
     write_files(folder_, {{"array-job", array + "\n"}});
-    report(fmt::format("Slurm job array {} with {} tasks; logs in {}", array, tasks, folder_.string()));
+    report(fmt::format("Slurm job array {} with {}; logs in {}", array,
+                       counted(static_cast<std::size_t>(tasks), "task"), folder_.string()));
     submit_merge({array});
   }
 

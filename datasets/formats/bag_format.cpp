@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/base/content_hash.h"
+#include "core/base/counted.h"
 #include "datasets/bags/bag_geometry.h"
 #include "datasets/bags/messages.h"
 #include "datasets/formats/image_lists.h"
@@ -146,8 +147,8 @@ class StreamCollector {
 
   void add_warnings() {
     for (const auto& [topic, count] : not_finite_)
-      streams_.warnings.push_back(fmt::format("{}:{}: {} messages with NaN or infinite values are skipped",
-                                              bag_.path().string(), topic, count));
+      streams_.warnings.push_back(fmt::format("{}:{}: {} with NaN or infinite values skipped",
+                                              bag_.path().string(), topic, counted(count, "message")));
   }
 
   static bool has_meters(const std::string& type, const SerializedMessage& message) {

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/counted.h"
 #include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
@@ -145,8 +146,8 @@ SequenceContent with_frames(SequenceContent content, const PairedImages& images)
                                  " color images have no depth image less than 20 ms away and are dropped");
   }
   if (images.missing > 0)
-    content.info.warnings.push_back("images: " + std::to_string(images.missing) +
-                                    " images of the lists do not exist and are dropped");
+    content.info.warnings.push_back("images: " + counted(images.missing, "image") +
+                                    " of the lists missing and dropped");
   return content;
 }
 

@@ -12,6 +12,7 @@
 
 #include "bench/analysis/run_groups.h"
 #include "bench/model/metrics.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "reports/dashboard/headline.h"
 #include "reports/dashboard/history_text.h"

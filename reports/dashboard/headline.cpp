@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/counted.h"
 #include "reports/dashboard/history_text.h"
 #include "reports/tables/text_format.h"
 

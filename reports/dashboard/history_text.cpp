@@ -13,6 +13,7 @@
 
 #include "bench/model/metrics.h"
 #include "core/base/content_hash.h"
+#include "core/base/counted.h"
 #include "core/base/module_timings.h"
 #include "reports/dashboard/headline.h"
 #include "reports/tables/text_format.h"
@@ -368,8 +369,8 @@ std::string tested_sentence(const bench::CommitHistory& history) {
     ++tested;
     is_short += series.values.size() < kTestable ? 1 : 0;
   }
-  std::string text =
-      fmt::format("Tested: {} series of compared metrics over {} commits", tested, history.commits.size());
+  std::string text = fmt::format("Tested: {} series of compared metrics over {}", tested,
+                                 counted(history.commits.size(), "commit"));
   if (is_short > 0) {
     text += fmt::format(
         "; {} of them have fewer than {} commits: they show failures, missing results, and steps of metrics "

@@ -12,6 +12,7 @@
 
 #include "bench/analysis/comparison.h"
 #include "bench/model/metrics.h"
+#include "core/base/counted.h"
 #include "reports/drawing/drawing.h"
 #include "reports/drawing/openloris_figure.h"
 #include "reports/page/page_data.h"

@@ -318,10 +318,6 @@ std::string metric_heading(const std::string& name) {
                      escape_html(name));
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 std::string glossary_html(const std::set<std::string>& names) {
   std::string items;
   for (const std::string& name : names) {

@@ -80,9 +80,6 @@ struct ColumnHead {
 /// Row heading with the name of a metric or module, and its description as a tooltip.
 [[nodiscard]] std::string metric_heading(const std::string& name);
 
-/// "1 run", "2 runs".
-[[nodiscard]] std::string counted(std::size_t count, const std::string& noun);
-
 /// Collapsed list of metrics and modules with their descriptions; names without one are omitted.
 [[nodiscard]] std::string glossary_html(const std::set<std::string>& names);
 

@@ -85,7 +85,7 @@ TEST_F(FrameCacheCommand, ListsSizesAndPrunes) {
   EXPECT_NE(list.out.find(name), std::string::npos) << list.out;
   EXPECT_NE(list.out.find("90 frames"), std::string::npos) << list.out;
   const ProgramResult size = execute({"data", "cache", "size"});
-  EXPECT_NE(size.out.find("of 100 MB in 1 files"), std::string::npos) << size.out;
+  EXPECT_NE(size.out.find("of 100 MB in 1 file,"), std::string::npos) << size.out;
   EXPECT_EQ(execute({"data", "cache", "prune", "--size", "0"}).exit_code, 0);
   EXPECT_EQ(execute({"data", "cache", "list"}).out, "");
 }

@@ -64,7 +64,7 @@ TEST(StoreImport, AResultOfEvoIsARun) {
   const std::string file = write_result(folder, {});
   const ProgramResult result = run_program({"store", "import", file, "--store", store});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.out, "1 runs added, 0 already present\n");
+  EXPECT_EQ(result.out, "1 run added, 0 already present\n");
   EXPECT_EQ(run_program({"store", "import", file, "--store", store}).out,
             "0 runs added, 1 already present\n");
   const ProgramResult stats = run_program({"stats", store, "--format", "csv"});
@@ -92,7 +92,7 @@ TEST(StoreImport, DifferentResultsOfEvoAreNotPooled) {
   relative.title = "RPE w.r.t. translation part (m)\\nfor delta = 1 (frames) using consecutive pairs";
   for (const EvoInfo& info : {aligned, other, relative}) {
     const ProgramResult result = import(info);
-    EXPECT_EQ(result.out, "1 runs added, 0 already present\n") << result.err;
+    EXPECT_EQ(result.out, "1 run added, 0 already present\n") << result.err;
   }
   expect_rejected(import(unaligned), {"another ate_rmse_m of orb on fr3_xyz", "(not aligned)", "--system"});
   EXPECT_EQ(import(unaligned, {"--system", "orb_raw"}).exit_code, 0);
@@ -261,7 +261,7 @@ TEST(StoreImport, AnExperimentOfVslamLabHasItsFailedRunsAndNoScale) {
 
   const ProgramResult folder =
       results.import("evaluation/walk", {"--truth", results.path("benchmark"), "--system", "orb"});
-  EXPECT_EQ(folder.out, "1 runs added, 0 already present\n") << folder.err;
+  EXPECT_EQ(folder.out, "1 run added, 0 already present\n") << folder.err;
   EXPECT_GT(results.ate_m(",orb,walk,RGBDTUM/desk,"), 0.3) << "nothing states that it has no scale";
   for (const char* part : {"00000_Key", "0.4 times as large", "scored as it is", "--fit-scale"})
     EXPECT_NE(folder.err.find(part), std::string::npos) << folder.err;
@@ -291,7 +291,7 @@ TEST(StoreImport, RunsAreNumberedAsTheirFiles) {
   EXPECT_EQ(results.import("ov").out, "2 runs added, 0 already present\n");
   results.write("ov/algorithms/vins/room/run1.txt", spiral(kOvEval));
   const ProgramResult later = results.import("ov");
-  EXPECT_EQ(later.out, "1 runs added, 2 already present\n") << later.err;
+  EXPECT_EQ(later.out, "1 run added, 2 already present\n") << later.err;
   EXPECT_NE(run_program({"store", "list", results.path("s.sqlite")}).out.find("repetition 10"),
             std::string::npos);
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -73,12 +74,12 @@ VersionSide side_of(const Comparison& comparison, const FollowedChange& whole) {
 
 std::string change_text(const Comparison& comparison, const FollowedChange& followed) {
   if (followed.failures)
-    return fmt::format("{} -> {} failed of {} runs", comparison.base_failed, comparison.head_failed,
-                       comparison.pairs);
+    return fmt::format("{} -> {} failed of {}", comparison.base_failed, comparison.head_failed,
+                       counted(static_cast<std::size_t>(comparison.pairs), "run"));
   const MetricChange& change = followed.change;
-  return fmt::format("{:.4g} -> {:.4g} {} ({}) on {}, {} pairs", change.base_median, change.head_median,
+  return fmt::format("{:.4g} -> {:.4g} {} ({}) on {}, {}", change.base_median, change.head_median,
                      change.unit, amount_text(change, change.change.median), change.subject,
-                     comparison.compared);
+                     counted(static_cast<std::size_t>(comparison.compared), "pair"));
 }
 
 Bisection bisect_versions(std::size_t count, const std::function<VersionSide(std::size_t version)>& side) {

@@ -20,6 +20,7 @@
 #include "bench/store/maintenance/store_export.h"
 #include "bench/store/store.h"
 #include "bench/systems/source_builds.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 #include "reports/text/comparison_report.h"
@@ -239,9 +240,8 @@ int compare(const CompareArguments& arguments) {
                                 {"compare.xml", report::comparison_junit(title, comparison)}});
   }
   if (comparison.result() == ChangeClass::kError) {
-    throw InputError("compare",
-                     fmt::format("all {} pairs of runs failed on both sides; the first failure: {}",
-                                 comparison.pairs, comparison.first_failure));
+    throw InputError("compare", fmt::format("all {} of runs failed on both sides; the first failure: {}",
+                                            counted(comparison.pairs, "pair"), comparison.first_failure));
   }
   return exit_code(comparison.result());
 }

@@ -21,6 +21,7 @@
 #include "bench/serve/static_server.h"
 #include "bench/store/store.h"
 #include "bench/store/store_progress.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "reports/dashboard/dashboard.h"
 #include "reports/dashboard/history_text.h"
@@ -53,9 +54,9 @@ int write_report(const ReportArguments& arguments) {
   const std::string page = report::report_html(store, subject);
   write_files(out / "tables", tables);
   write_files(out, {{"index.html", page}});
-  std::cout << fmt::format("{} runs; wrote {} ({:.1f} MB) and {} files in {}\n", subject.runs.size(),
+  std::cout << fmt::format("{}; wrote {} ({:.1f} MB) and {} in {}\n", counted(subject.runs.size(), "run"),
                            (out / "index.html").string(), static_cast<double>(page.size()) / 1e6,
-                           tables.size(), (out / "tables").string());
+                           counted(tables.size(), "file"), (out / "tables").string());
   for (const std::string& gap : subject.gaps) spdlog::warn("{}; the page lacks their content", gap);
   return subject.gaps.empty() ? kExitOk : kExitFindings;
 }

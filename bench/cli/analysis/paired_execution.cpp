@@ -8,6 +8,7 @@
 #include "bench/cli/console.h"
 #include "bench/plan/execution/plan_runner.h"
 #include "bench/store/store.h"
+#include "core/base/counted.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -24,8 +25,8 @@ std::vector<StoredRun> planned_runs(const Store& store, const PlanMatrix& matrix
 
 ExecutedPairs execute_pairs(const PlanMatrix& matrix, const std::string& store, const BuildPair& builds) {
   const int pairs = matrix.plan.repetitions;
-  spdlog::info("{} pairs of each of {} runs", pairs,
-               matrix.runs.size() / (2 * static_cast<std::size_t>(pairs)));
+  spdlog::info("{} of each of {}", counted(static_cast<std::size_t>(pairs), "pair"),
+               counted(matrix.runs.size() / (2 * static_cast<std::size_t>(pairs)), "run"));
   const PlanHooks hooks{.on_step = [](const std::string& step) { spdlog::debug("{}", step); },
                         .stop_requested = interrupt_requested};
   {

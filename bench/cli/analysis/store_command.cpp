@@ -20,6 +20,7 @@
 #include "bench/store/maintenance/salvage.h"
 #include "bench/store/maintenance/store_export.h"
 #include "bench/store/store.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 #include "reports/frames/stored_recording.h"
@@ -205,9 +206,10 @@ int list(const StoreArguments& arguments) {
         outcome_name(run.outcome), headline ? value_text(headline_metric(), *headline) : run.detail);
   }
   if (store.unfinished() > 0)
-    std::cout << fmt::format("{} runs in progress or interrupted\n", store.unfinished());
+    std::cout << fmt::format("{} in progress or interrupted\n",
+                             counted(static_cast<std::size_t>(store.unfinished()), "run"));
   for (const StoredPlan& plan : store.plans()) {
-    std::cout << fmt::format("plan {}: {} runs\n", plan.name, plan.run_keys.size());
+    std::cout << fmt::format("plan {}: {}\n", plan.name, counted(plan.run_keys.size(), "run"));
   }
   return kExitOk;
 }
@@ -304,14 +306,15 @@ int verify(const StoreArguments& arguments) {
 
 int collect(const StoreArguments& arguments) {
   const GarbageReport report = collect_garbage(arguments.store);
-  std::cout << fmt::format("removed {} files ({} bytes) and {} manifests\n", report.files, report.bytes,
-                           report.manifests);
+  std::cout << fmt::format("removed {} ({} bytes) and {}\n",
+                           counted(static_cast<std::size_t>(report.files), "file"), report.bytes,
+                           counted(static_cast<std::size_t>(report.manifests), "manifest"));
   return kExitOk;
 }
 
 /// @return findings if runs contradict those of the store
 int print_merge(const MergeReport& report) {
-  std::cout << fmt::format("{} runs added, {} already present\n", report.added, report.present);
+  std::cout << fmt::format("{} added, {} already present\n", counted(report.added, "run"), report.present);
   if (report.contradicting.empty()) return kExitOk;
   std::cout << fmt::format(
       "{} of these ended with other results there, which are kept; put the others into "

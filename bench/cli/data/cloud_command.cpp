@@ -14,6 +14,7 @@
 #include "bench/plan/plan_sequences.h"
 #include "bench/record/output_folder.h"
 #include "bench/run/sequence_source.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "datasets/mapping/voxel_map.h"
 #include "datasets/open_sequence.h"
@@ -72,7 +73,7 @@ int write_true_cloud(const CloudArguments& arguments) {
                      "gives no points: it lacks depth images, or true poses at the times of frames; check it "
                      "with `stillpoint data check`");
   write_output(arguments.out, eval::ply_bytes(cloud), rules);
-  std::cout << fmt::format("{} points: {}\n", cloud.size(), arguments.out);
+  std::cout << fmt::format("{}: {}\n", counted(cloud.size(), "point"), arguments.out);
   return kExitOk;
 }
 

@@ -23,6 +23,7 @@
 #include "bench/record/sequence_checksum.h"
 #include "bench/run/frame_cache.h"
 #include "bench/run/sequence_source.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
@@ -75,8 +76,8 @@ int show_size(const CacheSizeArguments& arguments) {
     store_frame_cache_limit(folder, datasets::size_from_text("--limit", arguments.limit));
   }
   std::cout << fmt::format(
-      "{} of {} in {} files, disk reserve {}\n  {}\n", datasets::size_text(datasets::cache_bytes(folder)),
-      datasets::size_text(frame_cache_limit(folder)), datasets::list_cache(folder).size(),
+      "{} of {} in {}, disk reserve {}\n  {}\n", datasets::size_text(datasets::cache_bytes(folder)),
+      datasets::size_text(frame_cache_limit(folder)), counted(datasets::list_cache(folder).size(), "file"),
       datasets::size_text(datasets::kDefaultDiskReserveBytes), folder.string());
   return kExitOk;
 }
@@ -222,9 +223,9 @@ int add(const AddArguments& arguments) {
     spdlog::info(
         "no recorded boxes (detections.txt); `stillpoint detect` records them, but changes the checksum");
   register_sequence(registry_file(), sequence, arguments.force ? Registration::kReplace : Registration::kNew);
-  std::cout << fmt::format("registered {}: {} ({}, {} frames, checksum {})\n", sequence.name,
-                           sequence.folder.string(), sequence.format, stream->info().frame_times.size(),
-                           sequence.checksum);
+  std::cout << fmt::format("registered {}: {} ({}, {}, checksum {})\n", sequence.name,
+                           sequence.folder.string(), sequence.format,
+                           counted(stream->info().frame_times.size(), "frame"), sequence.checksum);
   return kExitOk;
 }
 

@@ -12,6 +12,7 @@
 #include "bench/plan/plan_sequences.h"
 #include "bench/record/output_folder.h"
 #include "bench/run/sequence_source.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/detector/object_detector.h"
 #include "datasets/io/detections_file.h"
@@ -65,9 +66,10 @@ OdometryConfig config_of(const DetectArguments& arguments) {
 
 void print_summary(const ObjectDetector& detector, const fs::path& file) {
   const DetectorCounters& counters = detector.counters();
-  std::cout << fmt::format("{} boxes in {} frames, {} clipped to the image, {} rejected ({})\n  {}\n",
-                           counters.boxes, counters.processed, counters.clipped, counters.rejected,
-                           detector.description(), file.string());
+  std::cout << fmt::format("{} in {}, {} clipped to the image, {} rejected ({})\n  {}\n",
+                           counters.boxes == 1 ? "1 box" : fmt::format("{} boxes", counters.boxes),
+                           counted(static_cast<std::size_t>(counters.processed), "frame"), counters.clipped,
+                           counters.rejected, detector.description(), file.string());
 }
 
 int detect(const DetectArguments& arguments) {

@@ -15,6 +15,7 @@
 #include "bench/cli/console.h"
 #include "bench/fetch/data_lock.h"
 #include "bench/plan/bench_plan.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
 
@@ -124,8 +125,9 @@ void print_selection(const std::vector<datasets::CatalogueEntry>& entries,
       has_unknown = has_unknown || size == 0;
     }
   }
-  std::cout << fmt::format("{} sequences, {} available; {} archives to download to {}", entries.size(),
-                           available, counted.size(), root.string());
+  std::cout << fmt::format("{}, {} available; {} to download to {}",
+                           stillpoint::counted(entries.size(), "sequence"), available,
+                           stillpoint::counted(counted.size(), "archive"), root.string());
   if (bytes > 0) std::cout << (has_unknown ? ", more than " : ", ") << datasets::size_text(bytes);
   std::cout << "\n" << std::flush;
 }

@@ -17,6 +17,7 @@
 #include "bench/fetch/data_lock.h"
 #include "bench/fetch/fetch_sequences.h"
 #include "bench/plan/sequence_registry.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
 #include "reports/tables/data_table.h"
@@ -231,7 +232,7 @@ int get(const GetArguments& arguments) {
     throw InputError(fmt::format("{} downloads failed:\n  {}", result.problems.size(),
                                  fmt::join(result.problems, "\n  ")));
   }
-  std::cout << fmt::format("{} sequences are available\n", entries.size());
+  std::cout << fmt::format("{} available\n", counted(entries.size(), "sequence"));
   return kExitOk;
 }
 

@@ -24,6 +24,7 @@
 #include "bench/store/store.h"
 #include "bench/systems/published_table.h"
 #include "bench/systems/slam_system.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "reports/tables/data_table.h"
 #include "reports/tables/result_tables.h"
@@ -63,7 +64,8 @@ int exit_code(const std::vector<BenchRow>& rows) {
 int incomplete_code(const PlanMatrix& matrix, const PlanReport& report) {
   const std::size_t lacking = matrix.runs.size() - report.executed - report.cached - report.missing;
   if (lacking == 0 || report.interrupted) return kExitOk;
-  std::cout << fmt::format("{} runs are missing; the same command executes them\n", lacking);
+  std::cout << fmt::format("{} missing; the same command executes what is missing\n",
+                           counted(static_cast<std::size_t>(lacking), "run"));
   return kExitFindings;
 }
 
@@ -120,7 +122,8 @@ int dry_run(const PlanMatrix& matrix, const fs::path& store) {
     missing += state == "cached" ? 0 : 1;
     std::cout << fmt::format("{:<7}  {}\n", state, run_label(matrix.plan, run.identity) + later_text(run));
   }
-  std::cout << fmt::format("{} of {} runs cached\n", matrix.runs.size() - missing, matrix.runs.size());
+  std::cout << fmt::format("{} of {} cached\n", matrix.runs.size() - missing,
+                           counted(matrix.runs.size(), "run"));
   return kExitOk;
 }
 
@@ -214,8 +217,8 @@ int run_bench(const BenchArguments& arguments) {
   const Store store(arguments.store);
   const std::vector<BenchRow> rows = plan_rows(matrix, store);
   print_rows(matrix, rows, published_tables(matrix, store), out);
-  std::cout << fmt::format("{} of {} runs executed, {} cached; store {}\n", report.executed,
-                           matrix.runs.size(), report.cached, arguments.store);
+  std::cout << fmt::format("{} of {} executed, {} cached; store {}\n", report.executed,
+                           counted(matrix.runs.size(), "run"), report.cached, arguments.store);
   if (report.executed > 0) std::cout << rate_text(report.executed, elapsed.count()) << '\n';
   if (report.profile.runs > 0) {
     if (!out.empty()) write_files(out, {{kProfileFile, profile_json(report.profile)}});
@@ -288,7 +291,8 @@ int show(const std::string& name, bool json) {
     std::cout << run_key(run.identity) << "  " << run_label(matrix.plan, run.identity)
               << (missing.empty() ? "" : "  (not available)") << '\n';
   }
-  std::cout << fmt::format("{} runs of {} sequences\n", matrix.runs.size(), matrix.sequences.size());
+  std::cout << fmt::format("{} of {}\n", counted(matrix.runs.size(), "run"),
+                           counted(matrix.sequences.size(), "sequence"));
   return kExitOk;
 }
 

@@ -18,6 +18,7 @@
 #include "bench/plan/plan_matrix.h"
 #include "bench/store/store.h"
 #include "bench/systems/source_builds.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -137,7 +138,7 @@ class HistoryRunner {
       counts_.seconds += time.seconds();
       const std::size_t left = missing.size() - i - 1;
       if (left > 0 && !interrupt_requested())
-        spdlog::info("{} commits left, about {}", left,
+        spdlog::info("{} left, about {}", counted(static_cast<std::size_t>(left), "commit"),
                      duration_text(counts_.seconds / static_cast<double>(i + 1) * static_cast<double>(left)));
     }
     remove_builds();
@@ -187,8 +188,9 @@ int history(const HistoryArguments& arguments) {
   const std::vector<SourceCommit> commits = runner.commits();
   const HistoryCounts counts = runner.run(commits);
   std::cout << fmt::format(
-      "{} commits: {} executed, {} stored before, {} not built; {} failed runs; store {}\n", commits.size(),
-      counts.executed, counts.stored, counts.failed_builds, counts.failed_runs, arguments.store);
+      "{}: {} executed, {} stored before, {} not built; {}; store {}\n", counted(commits.size(), "commit"),
+      counts.executed, counts.stored, counts.failed_builds,
+      counted(static_cast<std::size_t>(counts.failed_runs), "failed run"), arguments.store);
   if (interrupt_requested()) {
     std::cout << "interrupted; run the same command again to continue\n";
     return kExitInterrupted;

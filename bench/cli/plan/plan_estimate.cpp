@@ -11,6 +11,7 @@
 
 #include "bench/cli/console.h"
 #include "bench/store/store.h"
+#include "core/base/counted.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -98,11 +99,11 @@ PlanEstimate estimate_plan(const PlanMatrix& matrix, const std::filesystem::path
 
 std::string estimate_text(const PlanEstimate& estimate) {
   std::string text = fmt::format(
-      "{} of {} runs to execute, {} of one worker; with {} at once: {}\n"
+      "{} of {} to execute, {} of one worker; with {} at once: {}\n"
       "based on earlier runs of the same variant: {}, of the same sequence: {}, on the time per frame: {}, "
       "assumed: {}\n",
-      estimate.pending.size(), estimate.runs, duration_text(estimate.one_worker_s), estimate.jobs,
-      duration_text(estimate.wall_s), count_of(estimate, CostSource::kSameRun),
+      estimate.pending.size(), counted(estimate.runs, "run"), duration_text(estimate.one_worker_s),
+      estimate.jobs, duration_text(estimate.wall_s), count_of(estimate, CostSource::kSameRun),
       count_of(estimate, CostSource::kSequence), count_of(estimate, CostSource::kFrames),
       count_of(estimate, CostSource::kAssumed));
   for (const TaskEstimate& task : estimate.tasks)

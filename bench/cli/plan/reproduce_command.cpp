@@ -32,6 +32,7 @@
 #include "bench/store/store.h"
 #include "bench/systems/published_table.h"
 #include "bench/systems/slam_system.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 #include "eval/io/openloris_file.h"
@@ -304,8 +305,8 @@ bool execute_runs(const Target& target, const PlanMatrix& matrix, const Reproduc
   StoreWriter writer(arguments.store);
   const PlanReport report =
       run_plan(matrix, writer, {.jobs = arguments.jobs, .retry = false}, plan_progress());
-  std::cout << fmt::format("{}: {} of {} runs executed, {} cached, {} skipped\n", target.name,
-                           report.executed, matrix.runs.size(), report.cached, report.missing);
+  std::cout << fmt::format("{}: {} of {} executed, {} cached, {} skipped\n", target.name, report.executed,
+                           counted(matrix.runs.size(), "run"), report.cached, report.missing);
   if (report.profile.runs > 0) std::cout << profile_text(report.profile);
   return !report.interrupted;
 }

@@ -10,6 +10,7 @@
 #include "bench/cli/console.h"
 #include "bench/cli/plan/plan_execution.h"
 #include "bench/executors/distribution.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -44,14 +45,14 @@ int run(const WorkerArguments& arguments) {
   use_copied_sequences(arguments.folder);
   const PlanReport report =
       run_task(arguments.folder, parse_task(arguments.task), arguments.jobs, plan_progress());
-  std::cout << fmt::format("{} runs executed, {} cached\n", report.executed, report.cached);
+  std::cout << fmt::format("{} executed, {} cached\n", counted(report.executed, "run"), report.cached);
   return report.interrupted ? kExitInterrupted : kExitOk;
 }
 
 int check(const WorkerArguments& arguments) {
   use_copied_sequences(arguments.folder);
   const PlanMatrix matrix = job_matrix(arguments.folder, all_task_keys(arguments.folder));
-  std::cout << fmt::format("{} runs can be executed here\n", matrix.runs.size());
+  std::cout << fmt::format("{} can be executed here\n", counted(matrix.runs.size(), "run"));
   return kExitOk;
 }
 
@@ -63,7 +64,7 @@ int wait(const WorkerArguments& arguments) {
 int merge(const WorkerArguments& arguments) {
   if (arguments.store.empty()) throw InputError("--store", "is required");
   const MergeReport report = merge_tasks(arguments.folder, arguments.store);
-  std::cout << fmt::format("{} runs added, {} already present\n", report.added, report.present);
+  std::cout << fmt::format("{} added, {} already present\n", counted(report.added, "run"), report.present);
   return kExitOk;
 }
 

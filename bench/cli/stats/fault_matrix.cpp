@@ -14,6 +14,7 @@
 #include "bench/plan/bench_plan.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/systems/external_system.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "eval/metrics/statistics.h"
 
@@ -305,9 +306,9 @@ int stats_faults(const StatsArguments& arguments) {
     output.notes = {"The expectation is that of the first variant; runs without a fault have none."};
   if (left_out > 0)
     output.notes.push_back(
-        fmt::format("Left out: {} runs of other seeds or repetitions. Each cell is the first of its runs, "
+        fmt::format("Left out: {} of other seeds or repetitions. Each cell is the first of its runs, "
                     "totals and exit status are those of the cells.",
-                    left_out));
+                    counted(left_out, "run")));
   print_stats(output, chosen);
   if (chosen.format == StatsFormat::kTable)
     std::cout << '\n' << report::format_table(totals, report::TableStyle::kMarkdown);

@@ -9,6 +9,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/stats/stats_actions.h"
 #include "bench/plan/bench_plan.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -242,9 +243,9 @@ int stats_ablation(const StatsArguments& arguments) {
     output.notes.emplace_back(
         "(all) of one sequence is the row of that sequence: its interval is over its pairs, and no statement "
         "on other sequences.");
-  if (copies > 0) output.notes.push_back(copies_note(copies, "pairs"));
+  if (copies > 0) output.notes.push_back(copies_note(copies, "pair"));
   if (without_value > 0)
-    output.notes.push_back(without_value_note(without_value, "pairs: only the base has one"));
+    output.notes.push_back(without_value_note(counted(without_value, "pair") + ": only the base has one"));
   output.notes = with_left_out(std::move(output.notes), selection);
   print_stats(output, arguments);
   return kExitOk;

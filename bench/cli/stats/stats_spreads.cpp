@@ -6,6 +6,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/stats/stats_actions.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -116,8 +117,9 @@ std::vector<std::string> spread_notes(const SpreadRows& rows, const RunSelection
                                       const std::string& metric) {
   std::vector<std::string> notes = {metric + "; n: different results with a value.",
                                     interval_note(kMedianTest, rows.counts)};
-  if (rows.copies > 0) notes.push_back(copies_note(rows.copies, "runs"));
-  if (rows.without_value > 0) notes.push_back(without_value_note(rows.without_value, "succeeded runs"));
+  if (rows.copies > 0) notes.push_back(copies_note(rows.copies, "run"));
+  if (rows.without_value > 0)
+    notes.push_back(without_value_note(counted(rows.without_value, "succeeded run")));
   return with_left_out(with_doubts(std::move(notes), rows.doubts), selection);
 }
 

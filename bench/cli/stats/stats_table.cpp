@@ -11,6 +11,7 @@
 
 #include "bench/config/spelling.h"
 #include "bench/model/metrics.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -150,14 +151,13 @@ std::string interval_note(const std::string& test, const std::set<std::size_t>& 
 
 std::string copies_note(std::size_t copies, const char* what) {
   return fmt::format(
-      "{} {} have the result of another seed or repetition to the bit: copies, which count once. Vary {} to "
+      "{} with the result of another seed or repetition to the bit: copies, which count once. Vary {} to "
       "obtain replicates of a deterministic run.",
-      copies, what, kPerturbationKey);
+      counted(copies, what), kPerturbationKey);
 }
 
-std::string without_value_note(std::size_t count, const char* what) {
-  return fmt::format("No finite value of the metric in {} {}; they are neither failed nor counted in n.",
-                     count, what);
+std::string without_value_note(const std::string& what) {
+  return fmt::format("No finite value of the metric in {}; not failed, and not counted in n.", what);
 }
 
 std::vector<std::string> with_left_out(std::vector<std::string> notes, const RunSelection& selection) {

@@ -59,10 +59,12 @@ void require_metric(const RunSelection& selection, const std::string& metric);
 [[nodiscard]] std::string interval_note(const std::string& test, const std::set<std::size_t>& counts);
 
 /// Sentence about runs or pairs that count once.
-/// @param what "runs" or "pairs"
+/// @param what "run" or "pair"
 [[nodiscard]] std::string copies_note(std::size_t copies, const char* what);
 
-[[nodiscard]] std::string without_value_note(std::size_t count, const char* what);
+/// Sentence about runs or pairs without a value.
+/// @param what with their number
+[[nodiscard]] std::string without_value_note(const std::string& what);
 
 /// Notes, followed by those about runs that were left out.
 [[nodiscard]] std::vector<std::string> with_left_out(std::vector<std::string> notes,

@@ -101,7 +101,7 @@ TEST(Comparison, WithoutPairsIsInconclusive) {
   EXPECT_EQ(
       count_sentence(comparison),
       "0 pairs of runs: 0 compared (0 with bit-equal trajectories), 0 failed at base, 0 at head (0 newly "
-      "failed, 0 newly succeeded); 1 runs of base and 1 of head have no counterpart");
+      "failed, 0 newly succeeded); 1 run of base and 1 of head have no counterpart");
   EXPECT_EQ(compare_runs({}, runs).result(), ChangeClass::kInconclusive);
 }
 

@@ -33,7 +33,7 @@ TEST(BonnFormat, ListedImagesThatDoNotExistAreDropped) {
   EXPECT_EQ(stream->info().rig.camera.fx, 542.822841);
   EXPECT_EQ(stream->info().rig.depth_units_per_m, 5000.0);
   ASSERT_EQ(stream->info().warnings.size(), 1U);
-  EXPECT_EQ(stream->info().warnings[0], "images: 1 images of the lists do not exist and are dropped");
+  EXPECT_EQ(stream->info().warnings[0], "images: 1 image of the lists missing and dropped");
 }
 
 TEST(Eth3dFormat, CalibrationIsInItsFile) {

@@ -48,7 +48,7 @@ TEST(JobFolder, ARunThatThisMachineDoesNotHaveIsAnError) {
   const fs::path job = folder.path() / "job";
   write_job(job, plan_in(folder), {{"0123456789abcdef"}}, SystemFiles::kCopied);
   expect_input_error([&] { static_cast<void>(job_matrix(job, task_keys(job, 1))); },
-                     {"1 runs, e.g. 0123456789abcdef"});
+                     {"has 1 run (e.g. 0123456789abcdef)"});
   std::ofstream(job / "build") << "another\n";
   expect_input_error([&] { static_cast<void>(job_matrix(job, task_keys(job, 1))); }, {"build another"});
 }

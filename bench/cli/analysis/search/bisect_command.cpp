@@ -17,6 +17,7 @@
 #include "bench/cli/console.h"
 #include "bench/plan/plan_matrix.h"
 #include "bench/systems/source_builds.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -168,8 +169,9 @@ VersionSide side_of_version(VersionComparer& versions, const FollowedChange& who
       if (side != VersionSide::kUndecided) break;
     }
   }
-  std::cout << fmt::format("{} {}, {} pairs: {}\n", versions.commits()[version].short_hash(), side_name(side),
-                           used, versions.commits()[version].subject);
+  std::cout << fmt::format("{} {}, {}: {}\n", versions.commits()[version].short_hash(), side_name(side),
+                           counted(static_cast<std::size_t>(used), "pair"),
+                           versions.commits()[version].subject);
   return side;
 }
 
@@ -193,9 +195,9 @@ int search(VersionComparer& versions, const BisectArguments& arguments) {
   const std::optional<FollowedChange> whole = find_change(versions, arguments, 0, last);
   if (!whole) {
     std::cout << fmt::format(
-        "{} did not change from {} to {} with {} pairs; choose another metric, range or plan\n",
-        arguments.metric, versions.commits().front().short_hash(), versions.commits().back().short_hash(),
-        arguments.max_pairs);
+        "{} did not change from {} to {} with {}; choose another metric, range or plan\n", arguments.metric,
+        versions.commits().front().short_hash(), versions.commits().back().short_hash(),
+        counted(static_cast<std::size_t>(arguments.max_pairs), "pair"));
     return kExitInconclusive;
   }
   const Bisection found = bisect_versions(versions.commits().size(), [&](std::size_t version) {
@@ -207,9 +209,9 @@ int search(VersionComparer& versions, const BisectArguments& arguments) {
                            commit.subject);
   const bool is_confirmed =
       find_change(versions, arguments, found.last_before, found.first_after).has_value();
-  std::cout << fmt::format("{} by its runs and those of its parent; {} of {} commits used, {} built now\n",
-                           is_confirmed ? "confirmed" : "not confirmed", versions.versions(), last + 1,
-                           versions.new_builds());
+  std::cout << fmt::format("{} by its runs and those of its parent; {} of {} used, {} built now\n",
+                           is_confirmed ? "confirmed" : "not confirmed", versions.versions(),
+                           counted(static_cast<std::size_t>(last + 1), "commit"), versions.new_builds());
   return is_confirmed ? kExitOk : kExitInconclusive;
 }
 
