@@ -287,6 +287,45 @@ TEST_F(StatsCommand, ImperfectionsAreGeometricMeansOverSequences) {
   EXPECT_NEAR(all.at("false_confidence"), 0.03, 1e-15);
 }
 
+// The logarithm of 0 made the geometric mean of all runs 0.
+TEST_F(StatsCommand, ImperfectionsHaveNoGeometricMeanOfAnErrorOf0) {
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan plan{.name = "rigs", .title = "", .text = "variants = [\"vo\"]\n", .run_keys = {}};
+  for (const auto& [sequence, ate_m] :
+       {std::pair{"a", 0.01}, {"a + rig:seed=1", 0.0}, {"b", 0.0}, {"b + rig:seed=2", 0.02}}) {
+    const bench::RunIdentity identity{.variant = "vo", .sequence = sequence};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", ate_m}}});
+    plan.run_keys.push_back(bench::run_key(identity));
+  }
+  writer.record_plan(plan);
+  const nlohmann::json json =
+      nlohmann::json::parse(stats({"imperfections", "--plan", "rigs", "--format", "json"}).out);
+  for (const nlohmann::json& row : json.at("rows")) {
+    const bool is_positive = row.at("fault") == "rig:seed=2";
+    EXPECT_EQ(row.at("ate_rmse_m").is_null(), !is_positive) << row;
+    EXPECT_TRUE(row.at("ate_ratio").is_null()) << row;  // relative to an ATE of 0, or 0 itself
+  }
+  EXPECT_NE(json.at("notes").dump().find("a + rig:seed=1, vo: an ATE of 0"), std::string::npos) << json;
+}
+
+TEST_F(StatsCommand, NotesNameTheMachineIfThereAreSeveral) {
+  bench::StoreWriter writer(file_);
+  for (const std::string machine : {"A", "B"}) {
+    for (int seed = 1; seed <= 2; ++seed) {
+      bench::RunIdentity identity{
+          .variant = "vo", .sequence = "a", .sequence_id = "a", .build = "b", .seed = seed};
+      identity.repetition = machine == "A" ? 1 : 2;
+      static_cast<void>(writer.acquire(identity));
+      writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", 0.1 * std::pow(seed, 3)}},
+                               .manifest = R"({"host": {"cpu": ")" + machine + R"(", "logical_cpus": 2}})"});
+    }
+  }
+  const std::string table = stats({"summary"}).out;
+  for (const std::string machine : {"A", "B"})
+    EXPECT_NE(table.find("machine " + machine + ", 2 processors: a, vo: "), std::string::npos) << table;
+}
+
 // A lost run has the error of the part that it covers, which is no measure for others.
 TEST_F(StatsCommand, ImperfectionsAreNotRelativeToALostRun) {
   bench::StoreWriter writer(file_);

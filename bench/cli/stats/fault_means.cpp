@@ -51,10 +51,25 @@ class Mean {
   int count_ = 0;
 };
 
+/// The mean of the logarithms of errors; there is none if one of them is 0.
+class LogMean {
+ public:
+  void add(double value) {
+    has_zero_ = has_zero_ || value <= 0.0;
+    mean_.add(std::log(value));
+  }
+  [[nodiscard]] std::optional<double> value() const { return has_zero_ ? std::nullopt : mean_.value(); }
+
+ private:
+  Mean mean_;
+  bool has_zero_ = false;
+};
+
 /// Runs of one variant with one fault, or with all.
 struct FaultMeans {
   int runs = 0, lost = 0;
-  Mean log_ate, log_ratio, false_confidence;
+  LogMean log_ate, log_ratio;
+  Mean false_confidence;
   double worst_ate_m = 0.0;
 
   void add(const RunGroup& group, const StoredRun& run) {
@@ -65,10 +80,10 @@ struct FaultMeans {
       ++lost;
       return;
     }
-    log_ate.add(std::log(*ate_m));
+    log_ate.add(*ate_m);
     worst_ate_m = std::max(worst_ate_m, *ate_m);
     if (const auto undisturbed_m = undisturbed_ate(group, run))
-      log_ratio.add(std::log(*ate_m / *undisturbed_m));
+      log_ratio.add(*undisturbed_m > 0.0 ? *ate_m / *undisturbed_m : 0.0);
   }
 
   [[nodiscard]] std::vector<std::string> cells(const std::string& fault, const std::string& variant) const {
@@ -128,6 +143,21 @@ GroupRows mean_rows(const RunGroup& group) {
   return rows;
 }
 
+/// Names the runs that have no logarithm of the ATE.
+std::vector<std::string> zero_notes(const RunSelection& selection) {
+  std::vector<std::string> notes;
+  for (const RunGroup& group : selection.groups) {
+    for (const StoredRun& run : group.runs) {
+      if (ate_if_located(run) != 0.0) continue;
+      notes.push_back(
+          fmt::format("{}{}, {}: an ATE of 0, as of a copy of the ground truth, has no geometric "
+                      "mean: n/a.",
+                      group_prefix(selection, group), run.identity.sequence, run.identity.variant));
+    }
+  }
+  return notes;
+}
+
 }  // namespace
 
 int stats_imperfections(const StatsArguments& arguments) {
@@ -147,10 +177,12 @@ int stats_imperfections(const StatsArguments& arguments) {
        .columns = {"fault", "variant", "runs", "lost", "ate_rmse_m", "ate_ratio", "worst_ate_rmse_m",
                    "false_confidence"},
        .groups = std::move(groups),
-       .notes = with_left_out({"ATE: geometric mean over the runs that are not lost; ratio: "
-                               "geometric mean of the ATE relative to the same sequence without a "
-                               "fault."},
-                              selection)},
+       .notes =
+           with_left_out(with_doubts({"ATE: geometric mean over the runs that are not lost; ratio: "
+                                      "geometric mean of the ATE relative to the same sequence without a "
+                                      "fault."},
+                                     zero_notes(selection)),
+                         selection)},
       chosen);
   return kExitOk;
 }

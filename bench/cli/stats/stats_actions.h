@@ -43,8 +43,8 @@ int stats_faults(const StatsArguments& arguments);
 ///
 ///   ATE    exp(mean(log e_i))        ratio    exp(mean(log(e_i / u_i)))
 ///
-/// and the largest e_i, the number of lost runs (no pose for half of the frames or more), and the mean of the
-/// false confidence, which is scored with faults only.
+/// neither if one of the errors is 0, and the largest e_i, the number of lost runs (no pose for half of the
+/// frames or more), and the mean of the false confidence, which is scored with faults only.
 /// @throws InputError if no run has a fault
 int stats_imperfections(const StatsArguments& arguments);
 

@@ -103,7 +103,8 @@ SpreadRows spread_rows(const RunSelection& selection, const std::string& metric,
       result.copies += row.copies;
       result.without_value += row.without_value;
       if (!row.doubt.empty())
-        result.doubts.push_back(fmt::format("{}, {}: {}.", row.sequence, row.variant, row.doubt));
+        result.doubts.push_back(fmt::format("{}{}, {}: {}.", group_prefix(selection, group), row.sequence,
+                                            row.variant, row.doubt));
       rows.rows.push_back(cells(row));
       rows.data.push_back(spread_values(row, metric_and_unit));
     }

@@ -165,6 +165,16 @@ std::vector<std::string> with_left_out(std::vector<std::string> notes, const Run
   return notes;
 }
 
+std::string group_prefix(const RunSelection& selection, const RunGroup& group) {
+  std::vector<std::string> parts;
+  for (const GroupColumn& column : kGroupColumns) {
+    const bool differs = std::ranges::any_of(
+        selection.groups, [&](const RunGroup& other) { return other.*column.value != group.*column.value; });
+    if (differs) parts.push_back(fmt::format("{} {}", column.name, group.*column.value));
+  }
+  return parts.empty() ? "" : fmt::format("{}: ", fmt::join(parts, "; "));
+}
+
 std::vector<std::string> with_doubts(std::vector<std::string> notes, const std::vector<std::string>& doubts) {
   constexpr std::size_t kListed = 10;
   const std::size_t listed = std::min(kListed, doubts.size());

@@ -70,6 +70,9 @@ void require_metric(const RunSelection& selection, const std::string& metric);
 [[nodiscard]] std::vector<std::string> with_left_out(std::vector<std::string> notes,
                                                      const RunSelection& selection);
 
+/// What distinguishes a group from others, such as "machine A, 4 processors: "; empty if there is only one.
+[[nodiscard]] std::string group_prefix(const RunSelection& selection, const RunGroup& group);
+
 /// `notes` with the first of the doubts, and the number of the others.
 [[nodiscard]] std::vector<std::string> with_doubts(std::vector<std::string> notes,
                                                    const std::vector<std::string>& doubts);
