@@ -129,19 +129,30 @@ bool has_small_whole_numbers(const Trajectory& path) {
          std::ranges::all_of(path.poses, [](const StampedPose& pose) { return pose.t.ns % kSecond == 0; });
 }
 
-/// Stamps in both files that are plausible as seconds only for a system that is far slower than a camera.
-std::optional<ConventionFinding> slow_stamps(const Trajectory& gt, const Trajectory& est) {
+bool is_slow(const Trajectory& path) {
   constexpr double kMinInterval = 5.0;  // [s]
-  const bool is_slow = interval_s(gt) >= kMinInterval && interval_s(est) >= kMinInterval;
-  const bool is_counted = est.poses.size() >= kMinMatches && has_small_whole_numbers(est);
-  if (!is_slow && !is_counted) return std::nullopt;
-  return ConventionFinding{
+  return path.poses.size() > 1 && interval_s(path) >= kMinInterval;
+}
+
+bool is_counted(const Trajectory& path) {
+  return path.poses.size() >= kMinMatches && has_small_whole_numbers(path);
+}
+
+/// @param subject what has the stamps
+ConventionFinding stamp_finding(const char* subject, const Trajectory& path) {
+  return {
       Convention::kStampUnit,
-      format_message(
-          "%s, one pose per %.3g s: if these are %s, convert them to seconds, since validity and "
-          "intervals of poses are in seconds",
-          is_counted ? "the estimate has whole numbers as stamps" : "the stamps of both files are sparse",
-          interval_s(est), is_counted ? "frame numbers or milliseconds" : "milliseconds")};
+      format_message("%s, one pose per %.3g s: if these are %s, convert them to seconds, since validity and "
+                     "intervals of poses are in seconds",
+                     subject, interval_s(path),
+                     is_counted(path) ? "frame numbers or milliseconds" : "milliseconds")};
+}
+
+/// As `find_implausible_stamps`: whole numbers in the estimate, or few poses in both files.
+std::optional<ConventionFinding> slow_stamps(const Trajectory& gt, const Trajectory& est) {
+  if (is_counted(est)) return stamp_finding("the estimate has whole numbers as stamps", est);
+  if (is_slow(gt) && is_slow(est)) return stamp_finding("the stamps of both files are sparse", est);
+  return std::nullopt;
 }
 
 std::optional<ConventionFinding> stamp_unit(const Trajectory& gt, const Trajectory& est) {
@@ -355,6 +366,12 @@ std::optional<ConventionFinding> repeated_poses(const Trajectory& gt, const Traj
 }
 
 }  // namespace
+
+std::optional<ConventionFinding> find_implausible_stamps(const Trajectory& path) {
+  if (is_counted(path)) return stamp_finding("the stamps are whole numbers", path);
+  if (is_slow(path)) return stamp_finding("the stamps are sparse", path);
+  return std::nullopt;
+}
 
 std::optional<ConventionFinding> find_wrong_scale(const Trajectory& gt, const Trajectory& whole) {
   constexpr double kMinDeviation = 0.1;  // of the scale from 1

@@ -48,6 +48,10 @@ struct ConventionFinding {
   std::string message;  ///< the suspected violation, the evidence, and a remedy
 };
 
+/// Stamps that are plausible as seconds only for a system that is far slower than a camera: one pose per 5 s,
+/// or small whole numbers as those of frames.
+[[nodiscard]] std::optional<ConventionFinding> find_implausible_stamps(const Trajectory& path);
+
 /// A scale of the estimate that is off by 10 % or more and triples the ATE.
 [[nodiscard]] std::optional<ConventionFinding> find_wrong_scale(const Trajectory& gt, const Trajectory& est);
 

@@ -17,6 +17,7 @@
 #include "bench/cli/analysis/pose_files.h"
 #include "bench/cli/command_line.h"
 #include "bench/record/output_folder.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "datasets/bags/bag_geometry.h"
 #include "datasets/bags/trajectory_writer.h"
@@ -213,6 +214,8 @@ struct TrajectoryArguments {
 eval::CovariantTrajectory load_with_covariances(const TrajectoryArguments& arguments,
                                                 const std::string& path) {
   PoseFile file = read_pose_file(arguments.files, path, FileRole::kEstimate);
+  if (const auto finding = eval::find_implausible_stamps(file.loaded.trajectory))
+    spdlog::warn("{}: {}", path, finding->message);
   eval::CovariantTrajectory loaded{std::move(file.loaded.trajectory)};
   if (file.covariances) loaded.covariances = eval::at_poses(loaded.trajectory, std::move(*file.covariances));
   return loaded;
@@ -237,7 +240,8 @@ int finish(const TrajectoryArguments& arguments, const eval::CovariantTrajectory
   inputs.push_back(arguments.files.times);
   inputs.push_back(arguments.files.covariance);
   write_poses(arguments.output, result, inputs);
-  std::cout << fmt::format("{}: {} poses{}\n", arguments.output.path, result.trajectory.poses.size(),
+  std::cout << fmt::format("{}: {}{}\n", arguments.output.path,
+                           counted(result.trajectory.poses.size(), "pose"),
                            result.covariances.empty() ? "" : " with covariances");
   return kExitOk;
 }
