@@ -2,6 +2,7 @@
 #include "core/calibration/calibrate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -298,6 +299,40 @@ SharedFlags observed_values(const SharedVector& sigmas, const SharedVector& prio
   return observed;
 }
 
+/// Means of gyroscope and accelerometer over consecutive intervals.
+std::vector<std::array<Eigen::Vector3d, 2>> inertial_means(std::span<const ImuSample> samples,
+                                                           double interval_s) {
+  std::vector<std::array<Eigen::Vector3d, 2>> means;
+  for (std::size_t first = 0, i = 0; i < samples.size(); ++i) {
+    if (seconds_between(samples[first].t, samples[i].t) < interval_s) continue;
+    std::array<Eigen::Vector3d, 2> mean = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    for (const ImuSample& sample : samples.subspan(first, i - first)) {
+      mean[0] += sample.gyro_b / static_cast<double>(i - first);
+      mean[1] += sample.accel_b / static_cast<double>(i - first);
+    }
+    means.push_back(mean);
+    first = i;
+  }
+  return means;
+}
+
+/// Whether the means of a sensor over 0.05 s change within 0.5 s by more than from one to the next, as those
+/// of white noise do not. The time offset is estimated from such changes: of a camera that does not move,
+/// noise alone would seem to show it.
+bool shows_time_offset(std::span<const ImuSample> samples) {
+  constexpr std::size_t kLag = 10;
+  constexpr double kMinRatio = 2.0;  // of squares
+  const auto means = inertial_means(samples, 0.05);
+  std::array<double, 2> slow{}, fast{};
+  for (std::size_t i = kLag; i < means.size(); ++i) {
+    for (std::size_t sensor = 0; sensor < 2; ++sensor) {
+      slow[sensor] += (means[i][sensor] - means[i - kLag][sensor]).squaredNorm();
+      fast[sensor] += (means[i][sensor] - means[i - 1][sensor]).squaredNorm();
+    }
+  }
+  return slow[0] > kMinRatio * fast[0] || slow[1] > kMinRatio * fast[1];
+}
+
 /// Makes numbers constant that are not observed, with their stated values; poses are kept. The readout time
 /// as well if it agrees with the stated one: a global shutter stays one.
 /// @return whether there are any
@@ -408,6 +443,7 @@ class Calibration {
     if (solution_.usable) solution_.sigmas = rounds_.deviations(solution_, is_variable_);
     if (!solution_.sigmas) return;
     observed_ = observed_values(*solution_.sigmas, priors_, is_variable_);
+    if (!shows_time_offset(input_.imu)) set(observed_, kTimeOffset, 1, false);
     if (rounds_.interrupted() || !set_back_unobserved(solution_, input_.stated, observed_, is_variable_))
       return;
     rounds_.run_round(solution_, is_variable_, rounds_.count());

@@ -212,6 +212,20 @@ TEST(Calibrate, FindsDelayAndFrameOfAGroundTruth) {
   expect_input_error([&] { static_cast<void>(calibrate(input, {})); }, {"ground truth", "keyframes"});
 }
 
+// The noise of the gyroscope has a derivative, too, which is no motion.
+TEST(Calibrate, ACameraAtRestDoesNotShowTheTimeOffset) {
+  SimulatedMotion motion = recorded_motion(5);
+  motion.stop_s = 1e-9;  // and at rest 1 s later
+  CalibrationInput input = recording(motion, stated_rig(5));
+  const Timestamp rest = from_seconds(1.2);
+  std::erase_if(input.imu, [&](const ImuSample& sample) { return sample.t < rest; });
+  std::erase_if(input.sections.front().keyframes,
+                [&](const CalibrationKeyframe& keyframe) { return keyframe.state.t < rest; });
+  const CalibrationResult result = calibrate(input, {.hold_out = false});
+  EXPECT_EQ(parameter(result, "time_offset_s").outcome, ParameterOutcome::kNotObserved);
+  EXPECT_EQ(result.calibration.rig.time_offset_s, 0.0);
+}
+
 TEST(Calibrate, WithoutAnImuTheDepthScaleStaysAsStated) {
   const CalibrationResult result =
       calibrate(recording(recorded_motion(1), stated_rig(1), false), {.hold_out = false});
