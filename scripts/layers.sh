@@ -140,7 +140,7 @@ row reports/live core/base bench/model bench/store reports/tables
 # --- the program ---
 row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
-row bench/cli/run $execution bench/systems core/calibration core/config core/geometry core/types core/pipeline/runners datasets datasets/cache datasets/calibration datasets/faults datasets/mapping eval/io eval/metrics bench/diagnose bench/diagnose/evidence bench/store bench/process bench/run bench/profile bench/profile/meters \
+row bench/cli/run $execution bench/systems core/calibration core/config core/geometry core/types core/pipeline/runners datasets datasets/cache datasets/calibration datasets/faults datasets/mapping eval/io eval/metrics eval/statistics bench/diagnose bench/diagnose/evidence bench/store bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/mapping datasets/synthetic/sequence eval/io eval/metrics eval/trajectory bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/analysis bench/cli/data bench/profile/meters bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \

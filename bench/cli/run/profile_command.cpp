@@ -432,6 +432,7 @@ void require_valid(const ProfileArguments& arguments) {
   if (!std::ifstream(arguments.tegrastats))
     throw InputError(arguments.tegrastats,
                      "cannot be read; first start `tegrastats --logfile` with this file");
+  require_tegrastats(arguments.tegrastats);
 }
 
 int run_profile(const ProfileArguments& arguments) {

@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/model/resource_metrics.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
+#include "eval/statistics/change_points.h"
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
@@ -150,6 +152,25 @@ Json drift_json(const std::vector<DriftRow>& rows) {
   return list;
 }
 
+namespace {
+
+/// The times at both ends of the line through all repetitions, as single repetitions scatter.
+std::string time_trend_text(const std::vector<DriftRow>& rows) {
+  constexpr double kSignificance = 0.05;
+  std::vector<double> frame_ms;
+  for (const DriftRow& row : rows) frame_ms.push_back(row.frame_ms);
+  const std::optional<eval::Trend> trend = eval::trend_of(frame_ms);
+  if (!trend)
+    return fmt::format("{:.3f} -> {:.3f} ms per frame, too few repetitions for a trend", frame_ms.front(),
+                       frame_ms.back());
+  const double last = static_cast<double>(rows.size() - 1);
+  return fmt::format("{:.3f} -> {:.3f} ms per frame by the line through all, {} (p = {:.2g})",
+                     trend->intercept, trend->intercept + trend->slope * last,
+                     trend->p_value <= kSignificance ? "a trend" : "no significant trend", trend->p_value);
+}
+
+}  // namespace
+
 std::string drift_text(const std::vector<DriftRow>& rows) {
   if (rows.empty()) return "";
   const DriftRow& first = rows.front();
@@ -160,11 +181,9 @@ std::string drift_text(const std::vector<DriftRow>& rows) {
   const auto throttled = std::ranges::count(rows, std::optional(true), &DriftRow::throttled);
   const bool is_known =
       std::ranges::any_of(rows, [](const DriftRow& row) { return row.throttled.has_value(); });
-  return fmt::format(
-      "drift over {} repetitions in {:.0f} s: {:.3f} -> {:.3f} ms per frame, temperature {} -> {}, throttled "
-      "in {}\n",
-      rows.size(), last.t_s, first.frame_ms, last.frame_ms, celsius(first), celsius(last),
-      is_known ? fmt::format("{}", throttled) : "n/a");
+  return fmt::format("drift over {} in {:.0f} s: {}; temperature {} -> {}, throttled in {}\n",
+                     counted(rows.size(), "repetition"), last.t_s, time_trend_text(rows), celsius(first),
+                     celsius(last), is_known ? fmt::format("{}", throttled) : "n/a");
 }
 
 std::string profile_text(const Profile& profile, const ProfileTitle& title) {
@@ -209,8 +228,9 @@ void print_profile(const Profile& profile) {
       profile.misses.thread_per_stage);
   if (const auto& report = profile.run.summary.realtime) {
     std::cout << fmt::format(
-        "real time: {} frames dropped, {} with late detections, {} poses later than {:.1f} ms\n",
-        report->dropped, report->late_detections, report->deadline_misses(), report->deadline_ms);
+        "real time: {} dropped, {} with late detections, {} later than {:.1f} ms\n",
+        counted(static_cast<std::size_t>(report->dropped), "frame"), report->late_detections,
+        counted(static_cast<std::size_t>(report->deadline_misses()), "pose"), report->deadline_ms);
   }
   print_waits(profile.run.summary.waits);
   print_process(profile);

@@ -35,8 +35,9 @@ struct DriftRow {
 /// Null for values that are not available.
 [[nodiscard]] nlohmann::ordered_json drift_json(const std::vector<DriftRow>& rows);
 
-/// The change from the first to the last repetition, "n/a" for values that are not available; empty without
-/// rows.
+/// The trend of the times over all repetitions (Mann-Kendall test, see eval/statistics/change_points.h), and
+/// the change of the temperature from the first to the last one; "n/a" for values that are not available;
+/// empty without rows.
 [[nodiscard]] std::string drift_text(const std::vector<DriftRow>& rows);
 
 /// One run with its measurements.

@@ -13,6 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.h"
+
 namespace stillpoint::bench {
 namespace {
 
@@ -183,11 +185,29 @@ std::vector<RailPower> parse_tegrastats(std::string_view line) {
   return rails;
 }
 
-std::vector<RailPower> read_tegrastats(const fs::path& log) {
+namespace {
+
+/// The last complete line of a log, and its number; 0 without one.
+std::pair<std::string, std::int64_t> last_line_of(const fs::path& log) {
   std::ifstream file(log);
   std::string whole, line;
-  while (std::getline(file, line) && !file.eof()) whole.swap(line);
-  return parse_tegrastats(whole);
+  std::int64_t number = 0;
+  for (; std::getline(file, line) && !file.eof(); ++number) whole.swap(line);
+  return {whole, number};
+}
+
+}  // namespace
+
+std::vector<RailPower> read_tegrastats(const fs::path& log) {
+  return parse_tegrastats(last_line_of(log).first);
+}
+
+void require_tegrastats(const fs::path& log) {
+  const auto [line, number] = last_line_of(log);
+  if (number == 0 || !parse_tegrastats(line).empty()) return;
+  throw InputError(log.string(), static_cast<int>(number),
+                   "is no line of tegrastats with the power of a rail, such as \"RAM 2448/3964MB ... VDD_IN "
+                   "4060mW/4060mW\"; pass the file of `tegrastats --logfile FILE`");
 }
 
 std::optional<double> device_power_w(const std::vector<RailPower>& rails) {

@@ -55,6 +55,9 @@ struct RailPower {
 /// Rails of the last complete line of a log of `tegrastats --logfile`; empty if there is none yet.
 [[nodiscard]] std::vector<RailPower> read_tegrastats(const std::filesystem::path& log);
 
+/// @throws InputError with the line if the last complete line of the log has no rail
+void require_tegrastats(const std::filesystem::path& log);
+
 /// Power of the input rail of the device ("VDD_IN", "POM_5V_IN", "VIN"); without one, the sum of all rails.
 /// Nothing without rails, or if a rail that is used has no valid value.
 [[nodiscard]] std::optional<double> device_power_w(const std::vector<RailPower>& rails);

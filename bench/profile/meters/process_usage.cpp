@@ -71,8 +71,9 @@ std::map<int, ThreadUsage> thread_usages() {
   const auto ticks_per_s = static_cast<double>(sysconf(_SC_CLK_TCK));
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
     std::ifstream file(entry.path() / "stat");
-    const std::string stat{std::istreambuf_iterator<char>(file), {}};
-    if (stat.empty()) continue;  // the thread has exited meanwhile
+    std::string stat;
+    std::getline(file, stat, '\0');  // whose errors are no exceptions
+    if (stat.empty()) continue;      // the thread has exited meanwhile
     threads[std::stoi(entry.path().filename())] = parse_thread_stat(stat, ticks_per_s);
   }
   return threads;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/profile/meters/run_monitor.h"
+#include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {
@@ -89,6 +90,14 @@ TEST(Tegrastats, ParsesTheFormatOfJetPack4) {
   ASSERT_EQ(rails.size(), 6u);
   EXPECT_EQ(rails[5].rail, "SYS5V");
   EXPECT_NEAR(device_power_w(rails).value(), 3.108, 1e-12);  // 0 + 621 + 932 + 0 + 155 + 1400 mW
+}
+
+TEST(Tegrastats, TextWithoutARailIsNoLog) {
+  const TemporaryFolder root;
+  expect_input_error([&] { require_tegrastats(root.write("notes", "first\nsecond 1/x\n")); },
+                     {"notes:2", "VDD_IN 4060mW/4060mW", "--logfile"});
+  EXPECT_NO_THROW(require_tegrastats(root.write("log", "RAM 1/2MB VDD_IN 4000mW/6000mW\n")));
+  EXPECT_NO_THROW(require_tegrastats(root.write("new", "RAM 1/2MB VDD")));  // no complete line yet
 }
 
 TEST(EnergyMeter, IntegratesPowerOverTime) {
