@@ -282,11 +282,14 @@ void require_measurable(const SynthRequest& request, const HandRecording& record
 /// Sets the mean position and direction of the camera.
 void describe_view(const Trajectory& camera, HandRecording& recording) {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  Eigen::AlignedBox3d box;
   for (const StampedPose& pose : camera.poses) {
+    box.extend(pose.T_w_f.p);
     recording.mean_eye_w += pose.T_w_f.p / static_cast<double>(camera.poses.size());
     axis += pose.T_w_f.q * Eigen::Vector3d::UnitZ();
   }
   recording.mean_yaw = std::atan2(axis.y(), axis.x());
+  recording.extent_m = box.sizes().maxCoeff();
 }
 
 }  // namespace

@@ -42,8 +42,9 @@ struct FrameTimes {
 struct HandRecording {
   PathSpline body_path;  ///< in the frame of the motion capture system, gravity along -z
   Eigen::Vector3d mean_eye_w = Eigen::Vector3d::Zero();  ///< camera position, over the whole recording
-  double mean_yaw = 0.0;                                 ///< of the optical axis, likewise [rad]
-  Timestamp epoch;                                       ///< timestamp of path time 0
+  double extent_m = 0.0;  ///< largest side of the box around the camera positions, likewise
+  double mean_yaw = 0.0;  ///< of the optical axis, likewise [rad]
+  Timestamp epoch;        ///< timestamp of path time 0
 };
 
 /// Loads and smooths the ground truth of a sequence of TUM RGB-D, poses T_w_c of the color camera at 100 Hz.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "core/base/error.h"
 #include "datasets/synthetic/counter_random.h"
@@ -122,10 +123,27 @@ MovingBody hand_recording_motion(const SynthRequest& request, const PathRequest&
   return {std::move(scene), recording.body_path.transformed(T_w_m), recording.epoch};
 }
 
+/// The mesh must have the unit of the path: the meter.
+/// @throws InputError for a mesh of 100 m or more in which the whole path is shorter than a hundredth of it,
+/// as of a room in centimeters
+void require_same_unit(const std::filesystem::path& file, const StaticMesh& mesh, double extent_m) {
+  constexpr double kLarge_m = 100.0, kMinFraction = 0.01;
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
+  const auto size_m = static_cast<double>(box.sizes().maxCoeff());
+  if (size_m < kLarge_m || extent_m >= kMinFraction * size_m) return;
+  throw InputError(
+      file.string(),
+      fmt::format("is {:.0f} m long, but the whole path of the camera {:.2g} m, so that the mesh "
+                  "is probably in centimeters or millimeters; scale it to meters",
+                  size_m, extent_m));
+}
+
 /// A scanned scene with the path of the camera in its frame.
 MovingBody mesh_motion(const SynthRequest& request, const PathRequest& path) {
   HandRecording recording = load_hand_recording(request, path, kFirstFrame_s);
   Scene scene = build_mesh_scene(request.mesh_file, camera_poses(recording.body_path, path.T_b_c));
+  require_same_unit(request.mesh_file, scene.world.mesh, recording.extent_m);
   return {std::move(scene), std::move(recording.body_path), recording.epoch};
 }
 

@@ -35,7 +35,8 @@ namespace fs = std::filesystem;
 /// colors.
 class RoomScan {
  public:
-  explicit RoomScan(double floor) {
+  /// @param scale of all coordinates
+  explicit RoomScan(double floor, double scale = 1.0) : scale_(scale) {
     for (const double side : {-3.0, 3.0}) {
       add_side({side, -3.0, floor}, {0.0, 6.0, 0.0}, {0.0, 0.0, 3.0});
       add_side({-3.0, side, floor}, {6.0, 0.0, 0.0}, {0.0, 0.0, 3.0});
@@ -58,7 +59,7 @@ class RoomScan {
     const int columns = static_cast<int>(u.norm() / kCell_m), rows = static_cast<int>(v.norm() / kCell_m);
     for (int row = 0; row <= rows; ++row) {
       for (int column = 0; column <= columns; ++column) {
-        const Vector3d p = corner + u * column / columns + v * row / rows;
+        const Vector3d p = scale_ * (corner + u * column / columns + v * row / rows);
         vertex_lines_ += fmt::format("{} {} {} {} {} {}\n", p.x(), p.y(), p.z(), random_.uniform(0, 255),
                                      random_.uniform(0, 255), random_.uniform(0, 255));
         if (row == rows || column == columns) continue;
@@ -70,6 +71,7 @@ class RoomScan {
     vertices_ += (rows + 1) * (columns + 1);
   }
 
+  double scale_;
   cv::RNG random_{7};
   std::string vertex_lines_, face_lines_;
   int vertices_ = 0, faces_ = 0;
@@ -221,6 +223,14 @@ TEST(MeshScene, ThePathMustBeThatOfALevelCameraInTheMesh) {
   EXPECT_NO_THROW(build({camera_attitude(0.0, 0.0, 0.0), {-4.0, 0.0, 1.0}})());  // from outside
   expect_input_error(build({camera_attitude(3.1, 0.0, 0.0), {-4.0, 0.0, 1.0}}),
                      {"room.ply", "not in view", "quaternions"});
+}
+
+TEST(MeshScene, ARoomInCentimetersIsRefused) {
+  const TemporaryFolder folder;
+  SynthRequest request = mesh_request(folder, 0.0);
+  request.mesh_file = folder.write("room.ply", RoomScan(0.0, 100.0).ply());
+  expect_input_error([&] { static_cast<void>(make_scene_setup(request)); },
+                     {"room.ply", "600 m long", "path of the camera 1.2 m", "scale it to meters"});
 }
 
 TEST(MeshScene, PeopleWalkOnItsFloorWhereThereIsSpace) {
