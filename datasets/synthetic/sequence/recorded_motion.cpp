@@ -309,8 +309,10 @@ HandRecording load_hand_recording(const SynthRequest& request, const PathRequest
     throw InputError(
         request.trajectory_file.string(),
         fmt::format(
-            "ends {:.1f} s after the first frame, but {:.1f} s are required; reduce --seconds or --start",
-            seconds_between(first, truth.poses.back().t), request.seconds));
+            "contains poses of {:.1f} s, but {:.1f} s from {:.1f} s on are required; reduce --seconds "
+            "or --start",
+            seconds_between(truth.poses.front().t, truth.poses.back().t), request.seconds,
+            seconds_between(truth.poses.front().t, first)));
   }
   const Timestamp from = after(epoch, from_s), to = after(epoch, to_s);
   const std::vector<StampedPose> poses = body_poses(truth, path.T_b_c, from, to);
