@@ -43,21 +43,30 @@ std::int64_t median_step(std::vector<std::int64_t> numbers) {
   return *middle;
 }
 
+/// Whether each number is a multiple of a step from the first one, as those of every k-th frame.
+bool is_regular(const std::vector<std::int64_t>& numbers, std::int64_t step) {
+  return std::ranges::all_of(numbers,
+                             [&](std::int64_t number) { return (number - numbers.front()) % step == 0; });
+}
+
 }  // namespace
 
-std::vector<Timestamp> times_of_frames(std::vector<std::int64_t> numbers,
-                                       const std::filesystem::path& folder) {
+std::vector<Timestamp> times_of_frames(std::vector<std::int64_t> numbers, const std::filesystem::path& folder,
+                                       NumberMeaning meaning) {
   constexpr std::int64_t kMaxStep = 10;  // a third of a second; times in ms, us and ns are further apart
   std::vector<Timestamp> times;
   const std::int64_t largest = numbers.empty() ? 0 : std::ranges::max(numbers);
   const std::int64_t step = median_step(numbers);
-  if (largest > eval::kMaxFrameNumber || step > kMaxStep)
+  const bool is_subset = meaning == NumberMeaning::kFrame && step > 0 && is_regular(numbers, step);
+  if (largest > eval::kMaxFrameNumber || (step > kMaxStep && !is_subset))
     throw InputError(
         folder.string(),
-        fmt::format("the numbers in the names of the images, up to {} and mostly {} apart, are neither "
-                    "frame numbers at 30 Hz nor times since 1970 in s, ms, us or ns; rename the images to "
-                    "times in seconds with decimals, such as 0.033333.png, or number them consecutively",
-                    largest, step));
+        fmt::format(
+            "the numbers in the names of the images, up to {} and mostly {} apart, are neither "
+            "frame numbers at 30 Hz nor times since 1970 in s, ms, us or ns; rename the images to "
+            "times in seconds with decimals, such as 0.033333.png, also if they are every k-th frame; "
+            "or number them consecutively at 30 Hz",
+            largest, step));
   for (const std::int64_t number : numbers) times.push_back(eval::time_of_frame(number));
   return times;
 }

@@ -21,12 +21,17 @@ namespace stillpoint::datasets {
 /// @throws std::filesystem::filesystem_error if the folder cannot be read
 [[nodiscard]] std::vector<std::filesystem::path> visible_files(const std::filesystem::path& folder);
 
+/// What the numbers in the names of images are: unknown, or frame numbers by the definition of the layout.
+enum class NumberMeaning { kUnknown, kFrame };
+
 /// Times of images without a stamp: frame number / 30 s.
 /// @param numbers in the names of images, in any order
 /// @param folder for messages
+/// @param meaning of frame numbers, a folder may have every k-th one only
 /// @throws InputError if the numbers are too large, or most of them too far apart, to be those of frames
 [[nodiscard]] std::vector<Timestamp> times_of_frames(std::vector<std::int64_t> numbers,
-                                                     const std::filesystem::path& folder);
+                                                     const std::filesystem::path& folder,
+                                                     NumberMeaning meaning = NumberMeaning::kUnknown);
 
 struct StampedFile {
   Timestamp t;

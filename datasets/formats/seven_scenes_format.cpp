@@ -102,7 +102,7 @@ SequenceContent read_seven_scenes(const std::filesystem::path& folder, FaultLog&
   const std::vector<NumberedFrame> frames = list_frames(folder);
   std::vector<std::int64_t> numbers;
   for (const NumberedFrame& frame : frames) numbers.push_back(frame.number);
-  const std::vector<Timestamp> times = times_of_frames(numbers, folder);
+  const std::vector<Timestamp> times = times_of_frames(numbers, folder, NumberMeaning::kFrame);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     faults.guard([&] { add_frame(frames[i].color, times[i], content, faults); });
   }
