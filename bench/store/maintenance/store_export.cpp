@@ -22,8 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kExportVersion = 3;
+constexpr int kExportVersion = 4;
 constexpr const char* kVersionKey = "stillpoint_store";
+constexpr const char* kTrajectoryKind = "trajectory";
 
 Json identity_json(const RunIdentity& identity) {
   return {{"system", identity.system},
@@ -125,6 +126,8 @@ Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
                              {"p95_ms", cost.p95_ms},
                              {"max_ms", cost.max_ms}});
   }
+  const auto trajectory = run.blobs.find(kTrajectoryKind);
+  json["trajectory_hash"] = trajectory == run.blobs.end() ? "" : trajectory->second;
   const bool everything = extent == ExportExtent::kEverything;
   json["attachments"] = Json::object();
   for (const auto& [kind, blob] : run.blobs) {
@@ -252,6 +255,9 @@ std::vector<StoredRun> exported_runs(const std::string& text, const std::string&
                       .machine = run.value("machine", ""),
                       .metrics = outcome.metrics,
                       .costs = outcome.costs});
+      // Not written by version 3.
+      if (std::string hash = run.value("trajectory_hash", ""); !hash.empty())
+        runs.back().blobs[kTrajectoryKind] = std::move(hash);
     }
     return runs;
   });

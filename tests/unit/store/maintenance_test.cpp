@@ -104,6 +104,23 @@ TEST(StoreMaintenance, MergeImportAndExportKeepTheTimesOfRuns) {
   EXPECT_EQ(numbers.machine, "A, 2 processors");
 }
 
+TEST(StoreMaintenance, NumbersNameTheTrajectoryByItsHash) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "from.sqlite";
+  {
+    StoreWriter writer(file);
+    static_cast<void>(writer.acquire(identity_of("a")));
+    writer.finish(identity_of("a"), {.attachments = {{"trajectory", "1 0 0 0 0 0 0 1\n"}}});
+  }
+  const std::string text = export_store(file, ExportExtent::kNumbers);
+  const StoredRun run = exported_runs(text, "n.json").front();
+  EXPECT_EQ(run.blobs.at("trajectory"), Store(file).runs().front().blobs.at("trajectory"));
+  // Version 3 had no hashes.
+  std::string older = text;
+  older.replace(older.find("\"trajectory_hash\""), 17, "\"unknown\"");
+  EXPECT_FALSE(exported_runs(older, "n.json").front().blobs.contains("trajectory"));
+}
+
 TEST(StoreMaintenance, AnInfiniteMetricIsAnErrorAndSurvivesExportAndImport) {
   const TemporaryFolder folder;
   const fs::path from = folder.path() / "from.sqlite";
@@ -211,7 +228,7 @@ TEST(StoreMaintenance, RejectsATextThatIsNotAnExport) {
   const TemporaryFolder folder;
   const fs::path into = folder.path() / "into.sqlite";
   expect_input_error([&] { import_store("{", "runs.json", into); }, {"runs.json", "not an exported store"});
-  expect_input_error([&] { import_store("{\"stillpoint_store\": 4}", "runs.json", into); },
+  expect_input_error([&] { import_store("{\"stillpoint_store\": 5}", "runs.json", into); },
                      {"newer version"});
 }
 

@@ -131,7 +131,7 @@ TEST(Schema, ExportsOfVersion1AreImported) {
     ASSERT_NE(at, std::string::npos) << current;
     text.replace(at, current.size(), old);
   };
-  replace("\"stillpoint_store\": 3", "\"stillpoint_store\": 1");
+  replace("\"stillpoint_store\": 4", "\"stillpoint_store\": 1");
   replace("\"protocol\"", "\"recipe\"");
   replace("\"image:000042\"", "\"picture:000042\"");
   const std::vector<StoredRun> runs = exported_runs(text, "runs.json");
