@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,18 @@
 namespace stillpoint::datasets {
 namespace {
 
+/// The first name of a bag in the folder, in alphabetical order; empty without one.
+std::string first_bag_in(const std::filesystem::path& folder) {
+  std::string first;
+  std::error_code ended;
+  for (std::filesystem::directory_iterator entry(folder, ended), end; !ended && entry != end;
+       entry.increment(ended)) {
+    const std::string name = entry->path().filename().string();
+    if (eval::is_bag(entry->path()) && (first.empty() || name < first)) first = name;
+  }
+  return first;
+}
+
 const SequenceFormat& find_format(const std::filesystem::path& folder, const std::string& requested) {
   std::string signatures;
   for (const SequenceFormat* const format : kSequenceFormats) {
@@ -32,6 +45,10 @@ const SequenceFormat& find_format(const std::filesystem::path& folder, const std
   if (!requested.empty()) {
     throw InputError("unknown format \"" + requested + "\"; expected one of: " + sequence_format_names());
   }
+  if (const std::string bag = first_bag_in(folder); !bag.empty())
+    throw InputError(folder.string(),
+                     "is a folder of bags without the metadata.yaml of rosbag2; name one of them, such as " +
+                         bag + "; the parts of a split recording have to be joined to one bag");
   throw InputError(folder.string(), "is not a sequence of a supported format" + signatures);
 }
 

@@ -2,6 +2,7 @@
 // Figures of `stillpoint eval`.
 #include <algorithm>
 #include <array>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -180,6 +181,9 @@ void require_figures(const EvalArguments& arguments, const OutputRules& rules) {
     throw InputError("--label", fmt::format("{} names for {} estimates; give one for each, in their order",
                                             arguments.labels.size(), arguments.files.estimates.size()));
   }
+  const std::set<std::string> names(arguments.labels.begin(), arguments.labels.end());
+  if (names.size() < arguments.labels.size())
+    throw InputError("--label", "gives two estimates one name; they could not be told apart");
   static_cast<void>(figure_kinds(arguments));
   static_cast<void>(path_options(arguments));
   static_cast<void>(error_axis(arguments));
