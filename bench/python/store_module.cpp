@@ -61,7 +61,7 @@ void bind_run(py::module_& m) {
       .field(
           "outcome", [](const StoredRun& run) { return bench::outcome_name(run.outcome); },
           "ok, lost, crashed, ...")
-      .field("detail", &StoredRun::detail, "Reason when not ok.")
+      .field("detail", &StoredRun::detail, "Reason when not ok; else why the errors are doubtful.")
       .field("started", &StoredRun::started, "UTC, ISO 8601.")
       .field("ended", &StoredRun::ended, "UTC, ISO 8601.")
       .field("machine", &StoredRun::machine, "CPU model and count.")

@@ -127,11 +127,14 @@ std::size_t frames_of(const RunRequest& request) {
 }
 
 std::string result_text(const RunIdentity& identity, const RunOutcome& outcome) {
+  const bool has_failed = outcome.outcome != Outcome::kOk;
+  const bool is_doubtful = !has_failed && !outcome.detail.empty();
   Json json = {{"system", identity.variant},
                {"version", identity.build},
                {"sequence", identity.sequence},
                {"status", status_name(outcome.outcome)},
-               {"failure", outcome.detail.empty() ? Json(nullptr) : Json(outcome.detail)}};
+               {"failure", has_failed ? Json(outcome.detail) : Json(nullptr)},
+               {"warnings", is_doubtful ? Json::array({outcome.detail}) : Json::array()}};
   json["protocols"] = Json::object();
   for (const Metric& metric : outcome.metrics) {
     json[metric.name] = metric.value;
