@@ -117,21 +117,23 @@ void visit_feature_fields(Visitor&& field, Config& config) {
 /// Keys of the matches: outliers, drift, depth.
 template <class Visitor, class Config>
 void visit_match_fields(Visitor&& field, Config& config) {
-  field(
-      "outlier_model", config.outlier_model,
-      FieldInfo{
-          .text = "Motion model of RANSAC: epipolar geometry, or a rigid motion of the measured depths (not "
-                  "in the paper).",
-          .paper = "III-A"});
+  field("outlier_model", config.outlier_model,
+        FieldInfo{
+            .text =
+                "Motion of the static features: epipolar geometry by RANSAC, or the rigid motion of most of "
+                "the measured depths (least median; not in the paper).",
+            .paper = "III-A"});
   field("ransac_threshold_px", config.ransac_threshold_px,
-        FieldInfo{"Largest residual of an inlier of RANSAC; px at the focal length.", "px", 0.1, 20.0});
+        FieldInfo{"Largest residual of a feature that follows this motion; px at the focal length.", "px",
+                  0.1, 20.0});
   field("ransac_min_inlier_ratio", config.ransac_min_inlier_ratio,
         FieldInfo{"With a smaller fraction of inliers nothing is rejected; 0 = as published.", "", 0.0, 1.0});
   field(
       "reject_static_only", config.reject_static_only,
       FieldInfo{
-          .text = "Whether features labeled dynamic take no part in RANSAC and are never rejected, so that a "
-                  "large dynamic object cannot become the consensus; not in the paper."});
+          .text =
+              "Whether features labeled dynamic take no part in that motion and are never rejected, so that "
+              "a large dynamic object cannot determine it; not in the paper."});
   field(
       "drift_min_correlation", config.drift_min_correlation,
       FieldInfo{

@@ -18,6 +18,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMinMatches = 8;
+constexpr std::size_t kSampleSize = 4;  // one more than the minimum averages noise
 constexpr std::size_t kMinDepthMatches = 20;
 constexpr double kMinLineNorm = 1e-12;  // below it, without translation, epipolar lines are undefined
 
@@ -82,18 +83,29 @@ std::size_t count_inliers(std::span<const PointObservation> observations, const 
   return inliers;
 }
 
+Pose motion_of_sample(std::span<const PointObservation> observations, std::minstd_rand& random) {
+  std::array<PointObservation, kSampleSize> sample;
+  for (PointObservation& one : sample) one = observations[random() % observations.size()];
+  return refine(sample, Pose{}, kQuadraticLossScale);
+}
+
+/// Samples of MajorityMotion: with 30 % of the points on moving objects, one sample is free of them with 99.6
+/// %. As accurate with 8, 30 and 72 on five renderings of market (VO, three starts each); 0.06, 0.14, 0.30
+/// ms.
+constexpr int kMajoritySamples = 20;
+
+/// Scale of the Cauchy loss of a refinement, relative to the inlier threshold. The lower limit is that of an
+/// image that is repeated: all errors are 0.
+constexpr double kMinScaleRatio = 0.025;
+constexpr double kMaxScaleRatio = 0.5;
+
 }  // namespace
 
 std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> observations,
                                           const RigidMotionSettings& settings) {
-  constexpr std::size_t kSampleSize = 4;
   if (observations.size() < kSampleSize) return std::nullopt;
   std::minstd_rand random;  // fixed seed: deterministic
-  const auto hypothesis = [&]() -> std::optional<Pose> {
-    std::array<PointObservation, kSampleSize> sample;
-    for (PointObservation& one : sample) one = observations[random() % observations.size()];
-    return refine(sample, Pose{}, kQuadraticLossScale);
-  };
+  const auto hypothesis = [&]() -> std::optional<Pose> { return motion_of_sample(observations, random); };
   const auto inliers = [&](const Pose& pose) {
     return count_inliers(observations, pose, settings.threshold);
   };
@@ -102,7 +114,38 @@ std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> obse
                      {.max_samples = 100, .sample_size = kSampleSize, .confidence = settings.confidence},
                      hypothesis, inliers);
   if (consensus.inliers < kSampleSize) return std::nullopt;
-  return refine(observations, consensus.pose, 0.5 * settings.threshold);
+  return refine(observations, consensus.pose, kMaxScaleRatio * settings.threshold);
+}
+
+std::optional<Pose> MajorityMotion::estimate(std::span<const PointObservation> observations,
+                                             double threshold) {
+  if (observations.size() < kSampleSize) return std::nullopt;
+  std::minstd_rand random;  // fixed seed: deterministic
+  double least = std::numeric_limits<double>::infinity();
+  Pose best;
+  for (int i = 0; i < kMajoritySamples; ++i) {
+    const Pose T_to_from = motion_of_sample(observations, random);
+    const double median = median_error(observations, T_to_from);
+    if (median >= least) continue;
+    least = median;
+    best = T_to_from;
+  }
+  if (least > threshold) return std::nullopt;
+  const double scale = std::clamp(least, kMinScaleRatio * threshold, kMaxScaleRatio * threshold);
+  return refine(observations, best, scale);
+}
+
+double MajorityMotion::median_error(std::span<const PointObservation> observations, const Pose& T_to_from) {
+  const Eigen::Matrix3d R_to_from = T_to_from.R();
+  squared_errors_.clear();
+  for (const PointObservation& observation : observations) {
+    const Eigen::Vector3d p = R_to_from * observation.p_w + T_to_from.p;
+    squared_errors_.push_back(p.z() > kMinDepth ? (p.hnormalized() - observation.bearing).squaredNorm()
+                                                : std::numeric_limits<double>::infinity());
+  }
+  const auto middle = squared_errors_.begin() + static_cast<std::ptrdiff_t>(squared_errors_.size() / 2);
+  std::ranges::nth_element(squared_errors_, middle);
+  return std::sqrt(*middle);
 }
 
 bool OutlierRejector::has_enough_inliers(const OutlierRejectionSettings& settings) const {
@@ -129,9 +172,8 @@ bool OutlierRejector::fit_rigid(std::span<const Match> matches, const OutlierRej
     if (match.depth > 0.0) correspondences_.push_back({match.depth * match.from.homogeneous(), match.to});
   }
   if (correspondences_.size() < kMinDepthMatches) return false;
-  const std::optional<Pose> T_to_from = estimate_rigid_motion(
-      correspondences_,
-      {.threshold = settings.threshold_px / settings.focal_px, .confidence = settings.confidence});
+  const std::optional<Pose> T_to_from =
+      majority_motion_.estimate(correspondences_, settings.threshold_px / settings.focal_px);
   if (!T_to_from) return false;
   inliers_.clear();
   for (const Match& match : matches) {

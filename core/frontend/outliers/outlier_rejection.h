@@ -29,6 +29,26 @@ struct RigidMotionSettings {
 [[nodiscard]] std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> observations,
                                                         const RigidMotionSettings& settings);
 
+/// T_to_from as `estimate_rigid_motion`, of the majority of the points: the sample with the least median of
+/// reprojection errors (Rousseeuw 1984) instead of the one with most errors below a threshold, refined with
+/// that median as scale of the loss. A camera that follows a near cart and turns against it is within 2 px of
+/// cart and scene; for most of the points, a camera that follows the scene is nearer. Samples are not refined
+/// before they are compared: that draws them to a motion in between, and the cart is followed more often.
+/// Deterministic; allocation-free after the first call. Otherwise stateless.
+class MajorityMotion {
+ public:
+  /// @param observations points in the earlier frame, bearings in the later one
+  /// @param threshold    largest median of the errors [normalized image plane]
+  /// @return nullopt for fewer than four observations, or a larger median
+  [[nodiscard]] std::optional<Pose> estimate(std::span<const PointObservation> observations,
+                                             double threshold);
+
+ private:
+  [[nodiscard]] double median_error(std::span<const PointObservation> observations, const Pose& T_to_from);
+
+  std::vector<double> squared_errors_;
+};
+
 /// One feature observed in two frames.
 struct Match {
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< undistorted normalized coordinates, earlier frame
@@ -42,7 +62,7 @@ using InlierMask = std::vector<std::uint8_t>;
 struct OutlierRejectionSettings {
   OutlierModel model = OutlierModel::kEpipolar;
   double threshold_px = 1.0;  ///< largest residual of an inlier, px at the camera's focal length
-  double confidence = 0.99;   ///< probability that at least one sample is free of outliers; as in VINS-Mono
+  double confidence = 0.99;   ///< kEpipolar: that at least one sample is free of outliers; as in VINS-Mono
   double min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded
   double focal_px = 0.0;          ///< > 0
 };
@@ -66,18 +86,20 @@ class OutlierRejector {
   [[nodiscard]] bool has_enough_inliers(const OutlierRejectionSettings& settings) const;
 
   std::vector<PointObservation> correspondences_;
+  MajorityMotion majority_motion_;
   InlierMask inliers_;
   std::optional<Pose> motion_;
   bool has_model_ = false;
 };
 
-/// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.
+/// Inliers of the dominant motion. Deterministic.
 ///
-/// kEpipolar: fundamental matrix F; residual = distance of `to` to the epipolar line l = F (from, 1)
-/// (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene F is not unique, but every
-/// solution fits the static matches, so none of them is rejected. Motion along the line is not detected.
+/// kEpipolar: fundamental matrix F by RANSAC (Fischler and Bolles 1981); residual = distance of `to` to the
+/// epipolar line l = F (from, 1) (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene
+/// F is not unique, but every solution fits the static matches, so none of them is rejected. Motion along the
+/// line is not detected.
 ///
-/// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`estimate_rigid_motion`);
+/// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`MajorityMotion`);
 /// residual = |pi(T_to_from (depth (from, 1))) - to|, pi(p) = (p.x, p.y) / p.z, which covers both directions
 /// and has no degenerate motion. Matches without depth use the epipolar line of the pose,
 /// l = t x (R (from, 1)), residual = |l . (to, 1)| / |(l.x, l.y)|. The motion between two frames is small
