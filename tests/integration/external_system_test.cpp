@@ -215,7 +215,7 @@ ProgramResult bench_copy(const TemporaryFolder& folder, const std::string& syste
     fs::copy(rendered_sequence(), folder.path() / "copy", fs::copy_options::recursive);
   folder.write("plan.toml", "systems = [" + systems + "]\n[recorded]\nsequences = [\"./copy\"]\n");
   return run_here(folder, {"bench", (folder.path() / "plan.toml").string(), "--store", store_of(folder),
-                           "--out", (folder.path() / "out").string()});
+                           "--out", (folder.path() / "out").string(), "--jobs", "1"});
 }
 
 TEST(ExternalSystem, AChangeOfARecordingIsAnErrorAndStopsLaterRuns) {
