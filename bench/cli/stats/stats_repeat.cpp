@@ -87,8 +87,11 @@ std::vector<report::DataRow> difference_values(const ExecutionDifference& row) {
   };
   if (row.stages.empty()) return {values({}, {})};
   std::vector<report::DataRow> rows;
-  for (const StageDifference& stage : row.stages)
-    rows.push_back(values(stage.stage, stage.frame ? report::DataValue(*stage.frame) : report::DataValue()));
+  for (const StageDifference& stage : row.stages) {
+    report::DataValue frame;
+    if (stage.frame) frame = *stage.frame;
+    rows.push_back(values(stage.stage, frame));
+  }
   return rows;
 }
 
