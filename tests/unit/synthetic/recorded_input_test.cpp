@@ -143,7 +143,7 @@ TEST(HandRecording, MissingInputIsNamed) {
   request.times_file.clear();
   request.seconds = 6.0;
   expect_input_error([&] { static_cast<void>(make_scene_setup(request)); },
-                     {"5.5 s", "--seconds or --start"});
+                     {"poses of 6.0 s, but 6.0 s from 0.5 s on", "--seconds or --start"});
 }
 
 TEST(HandRecording, TheSequencesOfTumAreSmoothedWithinTheNoiseOfMotionCapture) {
