@@ -27,9 +27,11 @@ constexpr auto enum_names(TrackerKind) {
   return EnumNames<TrackerKind, 2>{{{TrackerKind::kOpenCv, "opencv"}, {TrackerKind::kPatch, "patch"}}};
 }
 
-enum class OutlierModel { kEpipolar, kRigid };
+enum class OutlierModel { kEpipolar, kRigid, kMajority };
 constexpr auto enum_names(OutlierModel) {
-  return EnumNames<OutlierModel, 2>{{{OutlierModel::kEpipolar, "epipolar"}, {OutlierModel::kRigid, "rigid"}}};
+  return EnumNames<OutlierModel, 3>{{{OutlierModel::kEpipolar, "epipolar"},
+                                     {OutlierModel::kRigid, "rigid"},
+                                     {OutlierModel::kMajority, "majority"}}};
 }
 
 /// Settings of the grid detector. Paper Sec. III-B; 7x8 from Sec. IV-C, the rest as in the published code.
@@ -119,9 +121,8 @@ template <class Visitor, class Config>
 void visit_match_fields(Visitor&& field, Config& config) {
   field("outlier_model", config.outlier_model,
         FieldInfo{
-            .text =
-                "Motion of the static features: epipolar geometry by RANSAC, or the rigid motion of most of "
-                "the measured depths (least median; not in the paper).",
+            .text = "Motion of the static features: epipolar geometry, the rigid motion of measured depths "
+                    "that explains most matches, or that with the least median of errors (not in the paper).",
             .paper = "III-A"});
   field("ransac_threshold_px", config.ransac_threshold_px,
         FieldInfo{"Largest residual of a feature that follows this motion; px at the focal length.", "px",

@@ -172,8 +172,12 @@ bool OutlierRejector::fit_rigid(std::span<const Match> matches, const OutlierRej
     if (match.depth > 0.0) correspondences_.push_back({match.depth * match.from.homogeneous(), match.to});
   }
   if (correspondences_.size() < kMinDepthMatches) return false;
+  const double threshold = settings.threshold_px / settings.focal_px;
   const std::optional<Pose> T_to_from =
-      majority_motion_.estimate(correspondences_, settings.threshold_px / settings.focal_px);
+      settings.model == OutlierModel::kMajority
+          ? majority_motion_.estimate(correspondences_, threshold)
+          : estimate_rigid_motion(correspondences_,
+                                  {.threshold = threshold, .confidence = settings.confidence});
   if (!T_to_from) return false;
   inliers_.clear();
   for (const Match& match : matches) {
@@ -188,7 +192,7 @@ const InlierMask& OutlierRejector::find(std::span<const Match> matches,
                                         const OutlierRejectionSettings& settings) {
   motion_.reset();
   has_model_ = matches.size() >= kMinMatches &&
-               ((settings.model == OutlierModel::kRigid && fit_rigid(matches, settings)) ||
+               ((settings.model != OutlierModel::kEpipolar && fit_rigid(matches, settings)) ||
                 fit_epipolar(matches, settings));
   if (!has_model_) inliers_.assign(matches.size(), 1);
   return inliers_;

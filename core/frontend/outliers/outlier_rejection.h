@@ -62,7 +62,7 @@ using InlierMask = std::vector<std::uint8_t>;
 struct OutlierRejectionSettings {
   OutlierModel model = OutlierModel::kEpipolar;
   double threshold_px = 1.0;  ///< largest residual of an inlier, px at the camera's focal length
-  double confidence = 0.99;   ///< kEpipolar: that at least one sample is free of outliers; as in VINS-Mono
+  double confidence = 0.99;   ///< probability that at least one sample is free of outliers; as in VINS-Mono
   double min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded
   double focal_px = 0.0;          ///< > 0
 };
@@ -92,19 +92,22 @@ class OutlierRejector {
   bool has_model_ = false;
 };
 
-/// Inliers of the dominant motion. Deterministic.
+/// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.
 ///
-/// kEpipolar: fundamental matrix F by RANSAC (Fischler and Bolles 1981); residual = distance of `to` to the
+/// kEpipolar: fundamental matrix F; residual = distance of `to` to the
 /// epipolar line l = F (from, 1) (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene
 /// F is not unique, but every solution fits the static matches, so none of them is rejected. Motion along the
 /// line is not detected.
 ///
-/// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`MajorityMotion`);
+/// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`estimate_rigid_motion`);
 /// residual = |pi(T_to_from (depth (from, 1))) - to|, pi(p) = (p.x, p.y) / p.z, which covers both directions
 /// and has no degenerate motion. Matches without depth use the epipolar line of the pose,
 /// l = t x (R (from, 1)), residual = |l . (to, 1)| / |(l.x, l.y)|. The motion between two frames is small
 /// compared to the depth, so depth errors have little effect. Falls back to kEpipolar if fewer than 20
 /// matches have depth or the pose has too few inliers.
+///
+/// kMajority: as kRigid, by `MajorityMotion`. Behind a person who covers most of the image it rejects the
+/// scene more often, which inertial data would recognize: with an IMU, kRigid is better.
 ///
 /// Not specified by the paper; the published code uses kEpipolar.
 /// @return all ones if there are fewer than 8 matches or no model has enough inliers

@@ -83,6 +83,7 @@ TEST(ConfigOverlays, BearingTimeOffsetIsThatOfDynamicVins) {
 
 TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
   EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"},
+                                                  {"frontend.outlier_model", "\"majority\""},
                                                   {"backend.keyframe_min_shared_ratio", "0.7"},
                                                   {"backend.pixel_sigma_px", "0.5"},
                                                   {"backend.pixel_noise_scale", "2.0"},

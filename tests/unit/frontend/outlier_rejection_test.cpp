@@ -51,7 +51,8 @@ std::vector<Match> without_depth(std::vector<Match> matches) {
 
 class OutlierRejection : public testing::TestWithParam<OutlierModel> {};
 INSTANTIATE_TEST_SUITE_P(Models, OutlierRejection,
-                         testing::Values(OutlierModel::kEpipolar, OutlierModel::kRigid));
+                         testing::Values(OutlierModel::kEpipolar, OutlierModel::kRigid,
+                                         OutlierModel::kMajority));
 
 // Noise of 0.2 px per axis is 5 sigma below the threshold of 1 px. The epipolar model is estimated from a
 // noisy minimal sample, so some static matches may be rejected: 90 % must remain.
@@ -147,7 +148,7 @@ std::vector<Match> cart_before_a_scene(unsigned seed, int on_cart, int in_scene)
 }
 
 TEST(MajorityMotion, FollowsTheSceneInsteadOfANearCart) {
-  OutlierRejectionSettings settings = settings_for(OutlierModel::kRigid);
+  OutlierRejectionSettings settings = settings_for(OutlierModel::kMajority);
   settings.threshold_px = 2.0;
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const InlierMask inliers = find_inliers(cart_before_a_scene(seed, 30, 70), settings);
