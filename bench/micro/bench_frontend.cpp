@@ -176,9 +176,10 @@ void track_frame(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(track_frame)
-    ->ArgName("rigid")
+    ->ArgName("model")
     ->Arg(static_cast<int>(OutlierModel::kEpipolar))
     ->Arg(static_cast<int>(OutlierModel::kRigid))
+    ->Arg(static_cast<int>(OutlierModel::kMajority))
     ->Unit(benchmark::kMicrosecond);
 
 constexpr double kMismatch_px = 2.0;  // matches farther from the true position are wrong

@@ -124,17 +124,17 @@ void visit_match_fields(Visitor&& field, Config& config) {
             .text = "Motion of the static features: epipolar geometry, the rigid motion of measured depths "
                     "that explains most matches, or that with the least median of errors (not in the paper).",
             .paper = "III-A"});
-  field("ransac_threshold_px", config.ransac_threshold_px,
-        FieldInfo{"Largest residual of a feature that follows this motion; px at the focal length.", "px",
-                  0.1, 20.0});
+  field(
+      "ransac_threshold_px", config.ransac_threshold_px,
+      FieldInfo{
+          "Largest residual of a feature that follows the motion of `outlier_model`; px at the focal length.",
+          "px", 0.1, 20.0});
   field("ransac_min_inlier_ratio", config.ransac_min_inlier_ratio,
         FieldInfo{"With a smaller fraction of inliers nothing is rejected; 0 = as published.", "", 0.0, 1.0});
-  field(
-      "reject_static_only", config.reject_static_only,
-      FieldInfo{
-          .text =
-              "Whether features labeled dynamic take no part in that motion and are never rejected, so that "
-              "a large dynamic object cannot determine it; not in the paper."});
+  field("reject_static_only", config.reject_static_only,
+        FieldInfo{
+            .text = "Whether features labeled dynamic take no part in the motion of `outlier_model` and are "
+                    "never rejected, so that a large dynamic object cannot determine it; not in the paper."});
   field(
       "drift_min_correlation", config.drift_min_correlation,
       FieldInfo{

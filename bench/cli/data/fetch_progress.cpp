@@ -110,7 +110,7 @@ void accept_licences(const std::vector<datasets::CatalogueEntry>& entries, const
 void print_selection(const std::vector<datasets::CatalogueEntry>& entries,
                      const std::filesystem::path& root) {
   std::size_t available = 0;
-  std::set<std::string> counted;
+  std::set<std::string> archives;
   std::uint64_t bytes = 0;
   bool has_unknown = false;
   for (const datasets::CatalogueEntry& entry : entries) {
@@ -119,15 +119,14 @@ void print_selection(const std::vector<datasets::CatalogueEntry>& entries,
       continue;
     }
     for (const std::string& file : entry.sequence->archives) {
-      if (!counted.insert(entry.dataset->name + "/" + file).second) continue;
+      if (!archives.insert(entry.dataset->name + "/" + file).second) continue;
       const std::uint64_t size = datasets::archive_of(*entry.dataset, file).bytes;
       bytes += size;
       has_unknown = has_unknown || size == 0;
     }
   }
-  std::cout << fmt::format("{}, {} available; {} to download to {}",
-                           stillpoint::counted(entries.size(), "sequence"), available,
-                           stillpoint::counted(counted.size(), "archive"), root.string());
+  std::cout << fmt::format("{}, {} available; {} to download to {}", counted(entries.size(), "sequence"),
+                           available, counted(archives.size(), "archive"), root.string());
   if (bytes > 0) std::cout << (has_unknown ? ", more than " : ", ") << datasets::size_text(bytes);
   std::cout << "\n" << std::flush;
 }

@@ -89,9 +89,8 @@ Pose motion_of_sample(std::span<const PointObservation> observations, std::minst
   return refine(sample, Pose{}, kQuadraticLossScale);
 }
 
-/// Samples of MajorityMotion: with 30 % of the points on moving objects, one sample is free of them with 99.6
-/// %. As accurate with 8, 30 and 72 on five renderings of market (VO, three starts each); 0.06, 0.14, 0.30
-/// ms.
+/// With 30 % of the points on moving objects, one sample is free of them with a probability of 0.996. As
+/// accurate with 8, 30 and 72 on five renderings of market (VO, three starts each, single runs).
 constexpr int kMajoritySamples = 20;
 
 /// Scale of the Cauchy loss of a refinement, relative to the inlier threshold. The lower limit is that of an

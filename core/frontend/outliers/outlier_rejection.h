@@ -94,10 +94,9 @@ class OutlierRejector {
 
 /// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.
 ///
-/// kEpipolar: fundamental matrix F; residual = distance of `to` to the
-/// epipolar line l = F (from, 1) (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene
-/// F is not unique, but every solution fits the static matches, so none of them is rejected. Motion along the
-/// line is not detected.
+/// kEpipolar: fundamental matrix F; residual = distance of `to` to the epipolar line l = F (from, 1)
+/// (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene F is not unique, but every
+/// solution fits the static matches, so none of them is rejected. Motion along the line is not detected.
 ///
 /// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`estimate_rigid_motion`);
 /// residual = |pi(T_to_from (depth (from, 1))) - to|, pi(p) = (p.x, p.y) / p.z, which covers both directions
