@@ -115,7 +115,7 @@ row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/sy
 row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/statistics eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/profile/meters bench/record bench/systems bench/plan
 row bench/fetch $common core/detector datasets datasets/bags datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
-row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \
+row bench/executors core/base eval/io bench/model bench/config bench/store bench/store/maintenance bench/process bench/record bench/systems \
   bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/analysis/search core/base eval/statistics bench/model bench/analysis
@@ -150,7 +150,7 @@ row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics 
   bench/plan/execution bench/analysis bench/analysis/search bench/cli/analysis/import \
   bench/executors bench/serve datasets/mapping datasets/tiles reports/tables reports/text reports/drawing reports/drawing/evaluation reports/frames reports/page reports/dashboard reports/live
 row bench/cli/stats $execution eval/metrics bench/store bench/systems bench/plan bench/analysis reports/tables
-row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
+row bench/cli/analysis/search $execution bench/systems bench/plan bench/plan/execution bench/analysis bench/analysis/search bench/cli/analysis
 
 # The minimal build: its commands, and the functions that it does not have.
 row bench/minimal core/base bench/config bench/cli bench/plan bench/run bench/systems datasets datasets/synthetic/sequence datasets/tiles reports/drawing \

@@ -2,6 +2,7 @@
 #include "bench/config/config_file.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -115,6 +116,20 @@ std::vector<std::string> settings_without_effect(const ConfigRequest& request) {
         fmt::format("{}: \"{}\" has no effect; it requires {}", place_of(setting), setting.key, requirement));
   }
   return messages;
+}
+
+std::vector<std::string> files_of_config(const std::string& file) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  std::optional<TomlSource> source = find_toml(file, TomlKind::kConfig);
+  static_cast<void>(load_chain(*source, {}));  // rejects circular inheritance
+  while (source && !source->embedded) {
+    files.push_back(fs::absolute(source->path).lexically_normal().string());
+    const std::optional<Setting> inherits = find_inherits(parse_settings(source->text, source->path));
+    if (!inherits) break;
+    source = find_parent(*source, std::get<std::string>(inherits->value));
+  }
+  return files;
 }
 
 std::string toml_quoted(std::string_view text) {

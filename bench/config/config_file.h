@@ -33,6 +33,10 @@ struct ConfigRequest {
 /// @throws InputError as `load_config`
 [[nodiscard]] std::vector<std::string> settings_without_effect(const ConfigRequest& request);
 
+/// A config file and the files on disk that it inherits, directly or indirectly; absolute and normal paths.
+/// @throws InputError as `load_config`
+[[nodiscard]] std::vector<std::string> files_of_config(const std::string& file);
+
 /// A TOML string: the text in double quotes, with backslashes before quotes and backslashes.
 [[nodiscard]] std::string toml_quoted(std::string_view text);
 

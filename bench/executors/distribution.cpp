@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "bench/config/config_file.h"
 #include "bench/executors/hosts.h"
 #include "bench/plan/execution/run_cost.h"
 #include "bench/process/file_lock.h"
@@ -31,6 +33,8 @@ constexpr const char* kPlanFile = "plan.toml";
 constexpr const char* kBuildFile = "build";
 constexpr const char* kLockFile = "lock";
 constexpr const char* kSystemsFile = "systems";
+constexpr const char* kFilesFile = "files";
+constexpr std::string_view kCopiedConfigPrefix = "config-";
 constexpr std::string_view kSystemPrefix = "system-";
 constexpr std::string_view kKeysPrefix = "keys-";
 constexpr std::string_view kStorePrefix = "store-";
@@ -128,6 +132,47 @@ std::vector<std::string> copied_systems(const fs::path& folder) {
   return systems;
 }
 
+/// Copies a config and the files that it inherits. @return its path in the job folder
+std::string copy_config(const std::string& name, const fs::path& folder, std::size_t index) {
+  const std::vector<std::string> files = files_of_config(name);
+  fs::path common = fs::path(files.front()).parent_path();
+  for (const std::string& file : files) {
+    while (fs::path(file).lexically_relative(common).native().starts_with("../"))
+      common = common.parent_path();
+  }
+  const fs::path target = std::string(kCopiedConfigPrefix) + std::to_string(index);
+  fs::remove_all(folder / target);
+  for (const std::string& file : files) {
+    const fs::path copy = folder / target / fs::path(file).lexically_relative(common);
+    fs::create_directories(copy.parent_path());
+    fs::copy_file(file, copy);
+  }
+  return (target / fs::path(files.front()).lexically_relative(common)).string();
+}
+
+/// Text of the file `kFilesFile`; copies configs if the workers do not share the file system.
+std::string files_text(const fs::path& folder, const BenchPlan& plan, SystemFiles system_files) {
+  std::string text;
+  std::size_t index = 0;
+  for (const auto& [name, found] : plan.files) {
+    std::string path = fs::absolute(found).string();
+    if (system_files == SystemFiles::kCopied)
+      path = name.ends_with(".toml") ? copy_config(found, folder, index++)
+                                     : (fs::path("data") / fs::canonical(found).filename()).string();
+    text += name + "\n" + path + "\n";
+  }
+  return text;
+}
+
+/// `BenchPlan::files` on this machine.
+std::map<std::string, std::string> job_files(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  if (!fs::exists(folder / kFilesFile)) return files;
+  const std::vector<std::string> lines = lines_of(folder / kFilesFile);
+  for (std::size_t i = 0; i + 1 < lines.size(); i += 2) files[lines[i]] = (folder / lines[i + 1]).string();
+  return files;
+}
+
 void remove_store(const fs::path& store) {
   fs::remove_all(files_folder(store));
   for (const char* suffix : {"-wal", "-shm", ""}) fs::remove(store.string() + suffix);
@@ -158,6 +203,7 @@ void write_job(const fs::path& folder, const BenchPlan& plan,
     systems += "\n";
   }
   files.push_back({kSystemsFile, systems});
+  files.push_back({kFilesFile, files_text(folder, plan, system_files)});
   write_files(folder, files);
 }
 
@@ -177,8 +223,8 @@ std::vector<std::string> all_task_keys(const fs::path& folder) {
 }
 
 PlanMatrix job_matrix(const fs::path& folder, const std::vector<std::string>& keys) {
-  PlanMatrix matrix =
-      expand_plan(load_plan((folder / kPlanFile).string(), copied_systems(folder)), build_name(), {});
+  PlanMatrix matrix = expand_plan(
+      load_plan((folder / kPlanFile).string(), copied_systems(folder), job_files(folder)), build_name(), {});
   std::set<std::string> remaining(keys.begin(), keys.end());
   // erase returns the number of removed keys: 0 for a run of another task
   std::erase_if(matrix.runs,

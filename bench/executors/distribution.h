@@ -6,6 +6,10 @@
 /// The workers, on this or on other machines, share a job folder. It contains
 ///   plan.toml        the plan
 ///   systems          names of the other systems, one per line, in the order of the plan; optional
+///   files            configs and sequences that the plan names by paths: the path, and on the next line
+///   where it
+///                    is, relative to the job folder; optional
+///   config-I/        copy of a config with the files that it inherits; optional
 ///   system-I/        copy of the description of system I = 0, 1, ..., with its template and the files of its
 ///                    command; optional
 ///   build            of the program that divided the plan
@@ -28,7 +32,7 @@
 
 namespace stillpoint::bench {
 
-/// Where workers find the descriptions of other systems and the files of their commands.
+/// Where workers find configs, descriptions of other systems and the files of their commands.
 enum class SystemFiles {
   kCopied,  ///< in the job folder
   kShared,  ///< by the paths of this machine

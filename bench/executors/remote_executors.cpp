@@ -180,9 +180,15 @@ class SshHosts {
                          "cannot be copied; register it under a name of letters, "
                          "digits and _ . - with `stillpoint data add`");
       report(fmt::format("copy {} to {}", name, host.name));
-      static_cast<void>(call_ssh(host, {"mkdir", "-p", remote_ + "/data/" + name}));
-      require_rsync({"--copy-links", "--delete"}, folder.string() + "/",
-                    remote_path(host, "data/" + name + "/"));
+      const bool is_bag = fs::is_regular_file(folder);
+      if (is_bag && fs::path(name).extension() != folder.extension())
+        throw InputError("sequence \"" + name + "\"",
+                         "is a bag and cannot be copied under a name without its ending; register it as " +
+                             name + folder.extension().string());
+      const std::string target = "data/" + name;
+      static_cast<void>(call_ssh(host, {"mkdir", "-p", remote_ + (is_bag ? "/data" : "/" + target)}));
+      require_rsync({"--copy-links", "--delete"}, folder.string() + (is_bag ? "" : "/"),
+                    remote_path(host, target + (is_bag ? "" : "/")));
     }
   }
 

@@ -100,6 +100,7 @@ int parse_processor(std::string_view text, const std::string& cores) {
 /// @throws InputError if it is in neither
 std::string file_of_plan(const std::string& file, const BenchPlan& plan) {
   namespace fs = std::filesystem;
+  if (const auto known = plan.files.find(file); known != plan.files.end()) return known->second;
   const fs::path beside = (fs::path(plan.path).parent_path() / file).lexically_normal();
   std::error_code ignored;
   if (fs::exists(beside, ignored)) return beside.string();
@@ -111,11 +112,31 @@ std::string file_of_plan(const std::string& file, const BenchPlan& plan) {
 /// the working folder.
 std::string sequence_of_plan(const std::string& name, const BenchPlan& plan) {
   namespace fs = std::filesystem;
+  if (const auto known = plan.files.find(name); known != plan.files.end()) return known->second;
   const fs::path folder = fs::path(plan.path).parent_path();
   std::error_code ignored;
   const bool is_beside =
       name.find('/') != std::string::npos && !folder.empty() && fs::exists(folder / name, ignored);
   return is_beside ? (folder / name).string() : name;
+}
+
+/// Records where the plan finds its configs and sequences.
+void record_files(BenchPlan& plan) {
+  std::vector<std::string> configs = plan.variants;
+  for (const auto* group : {&plan.rendered.variants, &plan.recorded.variants})
+    configs.insert(configs.end(), group->begin(), group->end());
+  configs.push_back(plan.base);
+  for (const std::string& config : configs) {
+    std::istringstream parts(config);
+    for (std::string part; std::getline(parts, part, '+');) {
+      if (part.ends_with(".toml")) plan.files[part] = file_of_plan(part, plan);
+    }
+  }
+  for (std::string& sequence : plan.recorded.sequences) {
+    const std::string found = sequence_of_plan(sequence, plan);
+    if (sequence.find('/') != std::string::npos) plan.files[sequence] = found;
+    sequence = found;
+  }
 }
 
 }  // namespace
@@ -368,7 +389,8 @@ void validate_plan(const BenchPlan& plan) {
 
 }  // namespace
 
-BenchPlan load_plan(const std::string& name, const std::vector<std::string>& systems) {
+BenchPlan load_plan(const std::string& name, const std::vector<std::string>& systems,
+                    std::map<std::string, std::string> files) {
   const TomlSource source = find_toml(name, TomlKind::kPlan);
   const std::vector<Setting> settings = parse_settings(source.text, source.path);
   BenchPlan plan = parse_plan(settings);
@@ -379,8 +401,9 @@ BenchPlan load_plan(const std::string& name, const std::vector<std::string>& sys
   plan.text = source.text;
   if (plan.title.empty()) plan.title = plan.name;
   plan.systems = systems.empty() ? at_place(plan, "systems", [&] { return descriptions_of(plan); }) : systems;
-  for (std::string& sequence : plan.recorded.sequences) sequence = sequence_of_plan(sequence, plan);
+  plan.files = std::move(files);
   validate_plan(plan);
+  record_files(plan);
   return plan;
 }
 

@@ -118,6 +118,8 @@ struct BenchPlan {
   std::string text;                           ///< content of the file
   std::string path;                           ///< of the file, as shown in messages
   std::map<std::string, std::string> places;  ///< "file:line" of each key that is set
+  /// Where the configs and sequences are that the plan names by paths, which are the keys.
+  std::map<std::string, std::string> files;
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, BenchPlan>
@@ -150,10 +152,12 @@ void visit_fields(Visitor&& field, Config& config) {
 /// published tables. Recorded sequences are checked when the plan is expanded.
 /// @param name embedded name ("quick") or path of a TOML file
 /// @param systems copies of the descriptions that the plan names, in its order; empty: those that it names
+/// @param files   `BenchPlan::files` of a copied plan; paths that are not in it are found as in any plan
 /// @throws InputError if it does not exist; with file and line of the plan for every fault of the file, an
 /// unknown name (with the nearest one), a value out of range, and a seed, variant, system, protocol or sweep
 /// value that is listed twice
-[[nodiscard]] BenchPlan load_plan(const std::string& name, const std::vector<std::string>& systems = {});
+[[nodiscard]] BenchPlan load_plan(const std::string& name, const std::vector<std::string>& systems = {},
+                                  std::map<std::string, std::string> files = {});
 
 /// The base or a variant of a plan as `load_config` finds it. A part that ends in ".toml" is a file relative
 /// to the plan, else to the working folder.

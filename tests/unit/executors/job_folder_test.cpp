@@ -8,6 +8,7 @@
 #include "bench/store/store.h"
 #include "bench/systems/slam_system.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/sequences/fake_sequence.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {
@@ -77,6 +78,49 @@ TEST(JobFolder, DescriptionsTravelWithTheFilesOfTheirCommand) {
   std::ofstream(fs::path(matrix.systems[0].folder) / "tools/run.sh") << "exit 1\n";
   expect_input_error([&] { static_cast<void>(job_matrix(folder.path() / "elsewhere", keys)); },
                      {"system files differ"});
+}
+
+// Neither the folder of the plan nor the working folder of the caller is known to a worker.
+TEST(JobFolder, ConfigsTravelWithTheFilesThatTheyInherit) {
+  const TemporaryFolder folder;
+  folder.write("common/solver.toml", "backend.max_iterations = 3\n");
+  folder.write("plans/cfg/fast.toml",
+               "inherits = \"../../common/solver.toml\"\nfrontend.max_features = 90\n");
+  folder.write("plans/base.toml", "inherits = \"dynamic_vins\"\nbackend.max_iterations = 5\n");
+  const BenchPlan plan = load_plan(
+      folder.write("plans/p.toml",
+                   "base = \"base.toml\"\nvariants = [\"cfg/fast.toml+wo_mcc\", \"../common/solver.toml\"]\n"
+                   "[rendered]\nsequences = [\"walking_static\"]\n"));
+  const std::vector<std::string> keys = keys_of(plan);
+  const fs::path job = folder.path() / "job";
+  write_job(job, plan, {keys}, SystemFiles::kShared);
+  EXPECT_EQ(job_matrix(job, keys).keys, keys);
+  write_job(job, plan, {keys}, SystemFiles::kCopied);
+  const fs::path elsewhere = folder.path() / "elsewhere";
+  fs::rename(job, elsewhere);
+  fs::remove_all(folder.path() / "plans");
+  fs::remove_all(folder.path() / "common");
+  EXPECT_EQ(job_matrix(elsewhere, keys).keys, keys);
+}
+
+TEST(JobFolder, SequencesAreFoundByThePathsOfThePlan) {
+  const TemporaryFolder folder;
+  fake_sequence(folder, "plans/seq");
+  fake_sequence(folder, "other");
+  const BenchPlan plan = load_plan(
+      folder.write("plans/p.toml",
+                   "variants = [\"vo\"]\nimages = 0\n[recorded]\nsequences = [\"./seq\", \"../other\"]\n"));
+  const std::vector<std::string> keys = keys_of(plan);
+  ASSERT_EQ(keys.size(), 2u);
+  const fs::path job = folder.path() / "job";
+  write_job(job, plan, {keys}, SystemFiles::kShared);
+  EXPECT_EQ(job_matrix(job, keys).keys, keys);
+  write_job(job, plan, {keys}, SystemFiles::kCopied);
+  expect_input_error([&] { static_cast<void>(job_matrix(job, keys)); }, {"data/seq", "neither a folder"});
+  fs::create_directories(job / "data");
+  fs::rename(folder.path() / "plans/seq", job / "data/seq");
+  fs::rename(folder.path() / "other", job / "data/other");
+  EXPECT_EQ(job_matrix(job, keys).keys, keys);
 }
 
 // Copies of these would be other systems with the same key.
