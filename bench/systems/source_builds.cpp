@@ -32,6 +32,15 @@ fs::path source_folder(const SystemSource& source, const fs::path& repository, c
   return parent / (repository.filename().string() + "-" + hash_text(content_hash(identity)));
 }
 
+/// The line of an error; git writes advice after some.
+std::string git_problem(const std::string& messages) {
+  constexpr std::string_view kFatal = "fatal: ";
+  const std::size_t begin = messages.find(kFatal);
+  if (begin == std::string::npos) return last_line(messages);
+  const std::size_t text = begin + kFatal.size();
+  return last_line(messages.substr(text, messages.find('\n', text) - text));
+}
+
 const SystemSource& required_source(const ExternalSystem& system) {
   if (system.source.binary.empty())
     throw InputError(system.path, "has no table [source]; add git, build and binary");
@@ -71,8 +80,14 @@ std::string SourceBuilds::git(const std::vector<std::string>& arguments) const {
   std::string text = fs::exists(output) ? eval::read_text_file(output) : "";
   fs::remove(output);
   if (result.exit_code != 0 || result.signal != 0)
-    throw InputError(repository_.string(), "git: " + last_line(result.messages));
+    throw InputError(repository_.string(), "git: " + git_problem(result.messages) + shallow_remedy());
   return text;
+}
+
+std::string SourceBuilds::shallow_remedy() const {
+  std::error_code ignored;
+  const bool is_shallow = fs::exists(repository_ / ".git" / "shallow", ignored);
+  return is_shallow ? "; the clone is shallow, complete it with `git fetch --unshallow --tags`" : "";
 }
 
 /// Of `git log`, in its order.
@@ -93,9 +108,13 @@ std::vector<SourceCommit> SourceBuilds::log(const std::vector<std::string>& argu
   return commits;
 }
 
-std::vector<SourceCommit> SourceBuilds::commits(const std::string& range) const {
-  std::vector<SourceCommit> commits = log({"--first-parent", "--reverse", "--end-of-options", range, "--"});
+std::vector<SourceCommit> SourceBuilds::commits(const std::string& range, int most) const {
+  const std::string limit = "--max-count=" + std::to_string(most > 0 ? most : -1);
+  std::vector<SourceCommit> commits =
+      log({"--first-parent", limit, "--reverse", "--end-of-options", range, "--"});
   if (commits.empty()) throw InputError(range, "contains no commit; write OLD..NEW");
+  for (std::size_t i = 1; i < commits.size(); ++i)
+    commits[i].time = std::max(commits[i].time, commits[i - 1].time);
   std::stable_sort(commits.begin(), commits.end(),
                    [](const SourceCommit& a, const SourceCommit& b) { return a.time > b.time; });
   return commits;
@@ -107,9 +126,10 @@ SourceCommit SourceBuilds::commit(const std::string& revision) const {
 
 std::vector<SourceCommit> SourceBuilds::between(const SourceCommit& good, const SourceCommit& bad) const {
   std::vector<SourceCommit> commits = log({"--first-parent", "--reverse", good.hash + ".." + bad.hash, "--"});
-  if (git({"merge-base", good.hash, bad.hash}).substr(0, good.hash.size()) != good.hash || commits.empty())
+  const bool is_ancestor = git({"rev-list", "--max-count=1", good.hash, "^" + bad.hash}).empty();
+  if (!is_ancestor || commits.empty())
     throw InputError(good.short_hash() + ".." + bad.short_hash(),
-                     "the first commit is no ancestor of the second one; write GOOD..BAD");
+                     "the first commit is no ancestor of the second one; write GOOD..BAD" + shallow_remedy());
   return commits;
 }
 

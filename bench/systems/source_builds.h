@@ -52,10 +52,12 @@ class SourceBuilds {
                std::function<bool()> stop_requested);
 
   /// The commits of a range along first parents, by commit time, the newest first; those of equal time with
-  /// the oldest first, so that a history that orders commits by time and first run has their order.
+  /// the oldest first, so that a history that orders commits by time and first run has their order. A commit
+  /// that is dated before its parent, as after a rebase or by a wrong clock, has the time of the parent.
   /// @param range as for `git rev-list`, e.g. "v1.0..HEAD"
+  /// @param most only so many, those nearest to the end of the range; 0 = all
   /// @throws InputError with the message of git if there is no such range, or if it is empty
-  [[nodiscard]] std::vector<SourceCommit> commits(const std::string& range) const;
+  [[nodiscard]] std::vector<SourceCommit> commits(const std::string& range, int most = 0) const;
 
   /// @param revision as for `git rev-parse`
   /// @throws InputError with the message of git if it names no commit
@@ -78,6 +80,8 @@ class SourceBuilds {
  private:
   [[nodiscard]] std::string git(const std::vector<std::string>& arguments) const;
   [[nodiscard]] std::vector<SourceCommit> log(const std::vector<std::string>& arguments) const;
+  /// What to do about commits that are missing; empty if the clone is not shallow.
+  [[nodiscard]] std::string shallow_remedy() const;
   void add_tree(const SourceCommit& commit, const std::filesystem::path& tree) const;
 
   SystemSource source_;

@@ -113,10 +113,7 @@ class HistoryRunner {
       : arguments_(arguments), system_(system), builds_(system.builds(arguments.builds)) {}
 
   [[nodiscard]] std::vector<SourceCommit> commits() const {
-    std::vector<SourceCommit> commits = builds_.commits(arguments_.range);
-    const auto most = static_cast<std::size_t>(arguments_.max_commits);
-    if (most > 0 && commits.size() > most) commits.resize(most);
-    return commits;
+    return builds_.commits(arguments_.range, arguments_.max_commits);
   }
 
   HistoryCounts run(const std::vector<SourceCommit>& commits) {

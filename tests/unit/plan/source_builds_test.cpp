@@ -6,12 +6,67 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A repository without a commit, and the beginning of git commands for it.
+std::string empty_repository(const fs::path& repository) {
+  fs::create_directories(repository);
+  std::string git =
+      "GIT_CONFIG_GLOBAL=/dev/null git -C '" + repository.string() + "' -c user.name=a -c user.email=b ";
+  EXPECT_EQ(std::system((git + "init -q -b main").c_str()), 0);
+  return git;
+}
+
+/// Adds a commit for each minute of the hour of its date.
+void add_commits(const std::string& git, const std::vector<int>& minutes) {
+  for (std::size_t i = 0; i < minutes.size(); ++i) {
+    const std::string date = "GIT_COMMITTER_DATE=2024-01-01T00:" + std::to_string(minutes[i]) + ":00Z ";
+    const std::string commit = "commit -q --allow-empty -m " + std::to_string(i);
+    ASSERT_EQ(std::system((date + git + commit).c_str()), 0);
+  }
+}
+
+std::string subjects(const std::vector<SourceCommit>& commits) {
+  std::string text;
+  for (const SourceCommit& commit : commits) text += commit.subject;
+  return text;
+}
+
+const SystemSource kTouchingSource{.git = ".", .build = {"touch", "program"}, .binary = "program"};
+
+TEST(SourceBuilds, AreOfTheCommitsNearestToTheEndOfTheRangeWhateverTheirDates) {
+  const TemporaryFolder folder;
+  const fs::path repository = folder.path() / "repository";
+  add_commits(empty_repository(repository), {10, 10, 10, 40, 20, 30, 50});
+  const SourceBuilds builds(kTouchingSource, repository, folder.path() / "builds", {});
+  EXPECT_EQ(subjects(builds.commits("HEAD~4", 2)), "12");  // of equal time, the oldest first
+  EXPECT_EQ(subjects(builds.commits("HEAD")), "6345012");  // 4 and 5 are dated before their parent 3
+  EXPECT_EQ(builds.commits("HEAD").at(2).time, "2024-01-01T00:40:00Z");
+}
+
+TEST(SourceBuilds, NameWhatAShallowCloneLacks) {
+  const TemporaryFolder folder;
+  const fs::path repository = folder.path() / "repository";
+  const std::string git = empty_repository(repository);
+  add_commits(git, {10, 20, 30, 40});
+  ASSERT_EQ(std::system((git + "tag v1 HEAD~3").c_str()), 0);
+  const fs::path clone = folder.path() / "clone";
+  const std::string command = "git clone -q --depth 2 'file://" + repository.string() + "' '" +
+                              clone.string() + "' && git -C '" + clone.string() +
+                              "' fetch -q --depth 1 origin tag v1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const SourceBuilds builds(kTouchingSource, clone, folder.path() / "builds", {});
+  expect_input_error([&] { static_cast<void>(builds.commits("v0..HEAD")); },
+                     {"bad revision 'v0..HEAD'", "--unshallow"});
+  expect_input_error([&] { static_cast<void>(builds.between(builds.commit("v1"), builds.commit("HEAD"))); },
+                     {"no ancestor", "--unshallow"});
+}
 
 /// Stems of the files, or the folders, with an ending, sorted.
 std::vector<std::string> stems(const fs::path& folder, const std::string& ending) {
@@ -29,13 +84,11 @@ std::vector<std::string> stems(const fs::path& folder, const std::string& ending
 TEST(SourceBuilds, KeepsThoseInUseAndNotThoseThatFailed) {
   const TemporaryFolder folder;
   const fs::path repository = folder.path() / "repository";
-  const std::string git = "git -C '" + repository.string() + "' -c user.name=a -c user.email=b ";
+  const std::string git = empty_repository(repository);
   const auto commit_file = [&](const char* name) {
     folder.write(std::string("repository/") + name, "");
     return std::system((git + "add -A && " + git + "commit -q -m change").c_str());
   };
-  fs::create_directories(repository);
-  ASSERT_EQ(std::system((git + "init -q").c_str()), 0);
   ASSERT_EQ(commit_file("works"), 0);
   ASSERT_EQ(commit_file("fails"), 0);
 
