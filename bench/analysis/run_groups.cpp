@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -60,9 +61,10 @@ RunOrigin origin_of(const Json& manifest, const StoredRun& run) {
 
 RunOrigins run_origins(const Store& store, std::span<const StoredRun> runs) {
   RunOrigins stated;
-  std::unordered_map<std::string, RunOrigin> known;      // by manifest and build
-  std::unordered_map<std::string, std::string> configs;  // by config hash without the perturbation
-  std::string host = kUnknownHost;
+  std::unordered_map<std::string, std::optional<RunOrigin>> known;  // by manifest and build
+  std::unordered_map<std::string, std::string> configs;             // by config hash without the perturbation
+  const auto located = std::ranges::find_if(runs, [](const StoredRun& run) { return !run.machine.empty(); });
+  std::string host = located == runs.end() ? kUnknownHost : located->machine;
   for (const StoredRun& run : runs) {
     const auto [entry, is_new] = known.try_emplace(run.manifest_hash + " " + run.identity.build);
     if (is_new) {
@@ -70,7 +72,7 @@ RunOrigins run_origins(const Store& store, std::span<const StoredRun> runs) {
       if (manifest.is_object()) entry->second = origin_of(manifest, run);
     }
     const RunOrigin origin =
-        entry->second.commit.empty() ? RunOrigin{.commit = run.identity.build, .host = host} : entry->second;
+        entry->second.value_or(RunOrigin{.commit = run.identity.build, .time = run.committed, .host = host});
     stated.push_back(origin);
     host = origin.host;
     if (!origin.config.empty())

@@ -32,6 +32,7 @@ class FilledStore {
   }
 
   [[nodiscard]] Store store() const { return Store(file_); }
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
 
   [[nodiscard]] RunSelection select(const std::string& build = "") const {
     const Store opened = store();
@@ -160,6 +161,30 @@ TEST(RunGroups, KeepFailedRunsWithoutAManifestWithTheirMachineAndConfig) {
   ASSERT_EQ(selection.groups.size(), 1u);
   ASSERT_EQ(selection.groups[0].runs.size(), 2u);
   EXPECT_EQ(selection.groups[0].runs[0].outcome, Outcome::kCrashed);
+}
+
+TEST(RunGroups, OfImportedRunsWithoutABuildHaveTheirMachine) {
+  FilledStore filled;
+  filled.add(identity_of("", 1), "A");
+  filled.add(identity_of("", 2), "B");
+  const RunSelection selection = filled.select();
+  ASSERT_EQ(selection.groups.size(), 2u);
+  EXPECT_EQ(selection.groups[0].machine, "A, 2 processors");
+  EXPECT_EQ(selection.groups[1].machine, "B, 2 processors");
+}
+
+TEST(RunGroups, KeepAFirstRunWithoutAManifestWithThoseThatFollow) {
+  FilledStore filled;
+  {
+    StoreWriter writer(filled.file());
+    const RunIdentity crashed = identity_of("b", 1);
+    static_cast<void>(writer.acquire(crashed));
+    writer.finish(crashed, {.outcome = Outcome::kCrashed});
+  }
+  filled.add(identity_of("b", 2));
+  const RunSelection selection = filled.select();
+  ASSERT_EQ(selection.groups.size(), 1u);
+  EXPECT_EQ(selection.groups[0].machine, "A, 2 processors");
 }
 
 TEST(RunGroups, RejectUnknownAndAmbiguousBuilds) {
