@@ -48,7 +48,9 @@ const SequenceFormat& find_format(const std::filesystem::path& folder, const std
   if (const std::string bag = first_bag_in(folder); !bag.empty())
     throw InputError(folder.string(),
                      "is a folder of bags without the metadata.yaml of rosbag2; name one of them, such as " +
-                         bag + "; the parts of a split recording have to be joined to one bag");
+                         bag +
+                         "; the parts of a split recording are NAME_0.bag, NAME_1.bag, ... in a folder of "
+                         "their own");
   throw InputError(folder.string(), "is not a sequence of a supported format" + signatures);
 }
 

@@ -21,9 +21,10 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd";
 
-/// The files of a folder of rosbag2, as metadata.yaml lists them.
+/// The parts of a split bag of ROS 1, or the files of a folder of rosbag2, as metadata.yaml lists them.
 std::vector<fs::path> files_of_folder(const fs::path& folder) {
-  std::vector<fs::path> files;
+  std::vector<fs::path> files = eval::split_bag_parts(folder);
+  if (!files.empty()) return files;
   const SensorYaml metadata(folder / "metadata.yaml");
   for (const std::string& name : metadata.child("rosbag2_bagfile_information").texts("relative_file_paths")) {
     const fs::path file = folder / fs::path(name).filename();
@@ -67,7 +68,9 @@ void require_compression(const fs::path& path, bool supported, const char* suppo
 
 BagFile::BagFile(const fs::path& path) : path_(path) {
   if (!eval::is_bag(path))
-    throw InputError(path.string(), "is no bag; expected a file .bag, .mcap or .db3, or a folder of rosbag2");
+    throw InputError(path.string(),
+                     "is no bag; expected a file .bag, .mcap or .db3, or a folder of rosbag2 or of "
+                     "NAME_0.bag, NAME_1.bag");
   if (fs::is_directory(path)) {
     for (const fs::path& file : files_of_folder(path)) add_file(file);
   } else {

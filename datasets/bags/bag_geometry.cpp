@@ -121,6 +121,7 @@ eval::LoadedTrajectory trajectory_of_topic(const BagFile& bag, const std::string
           poses.push_back({stamp_or(pose.header.stamp, recorded), *pose.pose});
         } else {
           ++repairs.skipped;
+          if (connection.type == kNavSatFix) repairs.skip_reason = "no GNSS fix";
         }
       });
   eval::LoadedTrajectory loaded = sorted_trajectory(std::move(poses), repairs);
@@ -195,6 +196,7 @@ eval::LoadedTrajectory chained_poses(const std::map<Link, std::vector<StampedPos
       *std::ranges::max_element(path, {}, [&moving](const Link& link) { return moving.at(link).size(); });
   std::vector<StampedPose> poses;
   eval::RowRepairs repairs;
+  repairs.skip_reason = "a link of /tf without a transform within 1 s";
   for (const StampedPose& sample : moving.at(fastest)) {
     std::vector<NamedTransform> now = fixed;
     for (const Link& link : path) {

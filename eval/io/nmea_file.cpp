@@ -220,6 +220,7 @@ LoadedTrajectory parse_nmea(std::string_view text, const std::string& name) {
   LoadedTrajectory loaded;
   loaded.trajectory.frame = kGnssFrame;
   loaded.repairs.skipped = content.skipped;
+  loaded.repairs.skip_reason = "no GNSS fix or a damaged sentence";
   for (const Fix& fix : content.fixes) {
     StampedPose pose;
     pose.t = from_seconds(kSecondsPerDay * (*content.first_day + fix.day) + fix.time_of_day_s);

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <set>
 #include <system_error>
 
 #include "eval/io/column_header.h"
@@ -28,9 +31,8 @@ std::string rows_text(std::size_t count) { return std::to_string(count) + (count
 std::vector<std::string> repair_texts(const RowRepairs& repairs) {
   std::vector<std::string> texts;
   if (repairs.skipped > 0) {
-    texts.push_back(rows_text(repairs.skipped) +
-                    " skipped: no valid pose (nan, a zero quaternion, no GNSS fix, a damaged sentence, or a "
-                    "link of /tf without a transform within 1 s)");
+    texts.push_back(rows_text(repairs.skipped) + " skipped: no valid pose (" +
+                    std::string(repairs.skip_reason) + ")");
   }
   if (repairs.repeated > 0) {
     texts.push_back(rows_text(repairs.repeated) +
@@ -402,12 +404,48 @@ bool has_bag_extension(const fs::path& path) {
   return extension == ".bag" || extension == ".mcap" || extension == ".db3";
 }
 
+/// The name of a recording, and the number of a part: "NAME_" and 2 of "NAME_2024-05-01-10-00-00_2.bag".
+std::optional<std::pair<std::string, std::size_t>> part_of_split(const fs::path& file) {
+  constexpr std::string_view kDate = "0000-00-00-00-00-00";
+  const std::string stem = file.stem().string();
+  const std::size_t end = stem.rfind('_');
+  std::size_t number = 0;
+  if (file.extension() != ".bag" || end == std::string::npos) return std::nullopt;
+  const auto [last, error] = std::from_chars(stem.data() + end + 1, stem.data() + stem.size(), number);
+  if (error != std::errc{} || last != stem.data() + stem.size()) return std::nullopt;
+  std::string name = stem.substr(0, end);
+  const auto fits = [](char letter, char form) {
+    return form == '-' ? letter == '-' : letter >= '0' && letter <= '9';
+  };
+  if (name.size() >= kDate.size() && std::equal(kDate.rbegin(), kDate.rend(), name.rbegin(),
+                                                [&](char form, char letter) { return fits(letter, form); }))
+    name.resize(name.size() - kDate.size());
+  return std::pair(name, number);
+}
+
 }  // namespace
+
+std::vector<fs::path> split_bag_parts(const fs::path& folder) {
+  std::map<std::size_t, fs::path> parts;  // by number
+  std::set<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->is_directory()) return {};
+    if (!has_bag_extension(entry->path())) continue;
+    const auto part = part_of_split(entry->path());
+    if (!part || !parts.try_emplace(part->second, entry->path()).second) return {};
+    names.insert(part->first);
+  }
+  if (error || names.size() != 1 || parts.size() < 2 || parts.rbegin()->first + 1 != parts.size()) return {};
+  std::vector<fs::path> files;
+  for (const auto& [number, file] : parts) files.push_back(file);
+  return files;
+}
 
 bool is_bag(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return has_bag_extension(path);
-  if (!fs::exists(path / "metadata.yaml", ignored)) return false;
+  if (!fs::exists(path / "metadata.yaml", ignored)) return !split_bag_parts(path).empty();
   return std::any_of(fs::directory_iterator(path, ignored), fs::directory_iterator(),
                      [](const fs::directory_entry& entry) {
                        return has_bag_extension(entry.path()) || has_bag_extension(entry.path().stem());

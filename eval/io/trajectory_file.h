@@ -32,6 +32,8 @@ struct RowRepairs {
   std::size_t repeated = 0;   ///< with the stamp of an earlier row, which is used instead
   std::size_t reordered = 0;  ///< up to `kMaxDisorder_s` earlier than a row before them; sorted by time
   std::size_t unstamped = 0;  ///< of a bag, with the stamp 0; the time of their recording is used
+  /// Why rows of this format are skipped.
+  std::string_view skip_reason = "NaN or a zero quaternion";
 };
 
 /// Rows that are further from their place by time are an error: the file may contain several runs.
@@ -72,9 +74,15 @@ struct LoadedTrajectory {
 /// The trajectory as if its quaternions had been read in the other order.
 [[nodiscard]] Trajectory with_other_order(const Trajectory& trajectory, QuaternionOrder read);
 
-/// Whether the path is a bag by its name: a file .bag, .mcap or .db3, or a folder with metadata.yaml and one
-/// of these files, as `ros2 bag` writes it.
+/// Whether the path is a bag by its name: a file .bag, .mcap or .db3, a folder with metadata.yaml and one of
+/// these files, as `ros2 bag` writes it, or a folder with the parts of a split bag of ROS 1.
 [[nodiscard]] bool is_bag(const std::filesystem::path& path);
+
+/// The parts of a bag that `rosbag record --split` wrote, in their order: NAME_0.bag, NAME_1.bag ..., with or
+/// without the dates of their beginnings before the numbers. They are all bags of the folder, which has no
+/// subfolders, unlike an extracted dataset.
+/// @return two or more; empty for any other path
+[[nodiscard]] std::vector<std::filesystem::path> split_bag_parts(const std::filesystem::path& folder);
 
 struct TrajectorySource {
   std::filesystem::path path;
