@@ -21,6 +21,8 @@ constexpr std::size_t kGridPoints = 3000;
 constexpr double kMinGridStep = 0.05;    // [s]
 constexpr double kMinCommonRatio = 0.4;  // of the shorter signal
 constexpr double kMinCorrelation = 0.5;  // correlation of different motions stays below
+constexpr double kCoarseSteps = 4.0;     // of a coarse grid
+constexpr double kMinCoarseCorrelation = 0.7;
 constexpr std::size_t kCandidates = 4;
 constexpr double kSearchStep = 0.02;  // [s]
 constexpr double kPrecision = 1e-5;   // [s]
@@ -108,7 +110,8 @@ std::optional<double> lag_score(const Signals& gt, const Signals& est, long lag)
 }
 
 /// Lags with the largest scores that are local maxima, best first, as offsets of the estimate [s].
-std::vector<double> candidates(const Trajectory& gt, const Trajectory& est, double step_s) {
+std::vector<double> candidates(const Trajectory& gt, const Trajectory& est, double step_s,
+                               double min_correlation) {
   const Signals of_gt = signals_of(gt, step_s);
   const Signals of_est = signals_of(est, step_s);
   const long first = -static_cast<long>(of_est[0].size());
@@ -118,7 +121,7 @@ std::vector<double> candidates(const Trajectory& gt, const Trajectory& est, doub
   const double at_equal_starts = seconds_between(est.poses.front().t, gt.poses.front().t);
   std::vector<std::pair<double, double>> peaks;  // score, offset
   for (std::size_t i = 1; i + 1 < scores.size(); ++i) {
-    if (scores[i] < kMinCorrelation || scores[i] < scores[i - 1] || scores[i] <= scores[i + 1]) continue;
+    if (scores[i] < min_correlation || scores[i] < scores[i - 1] || scores[i] <= scores[i + 1]) continue;
     peaks.emplace_back(scores[i],
                        at_equal_starts + step_s * static_cast<double>(first + static_cast<long>(i)));
   }
@@ -223,12 +226,16 @@ std::optional<TimeOffset> find_time_offset(const Trajectory& gt, const Trajector
   if (std::min(gt.poses.size(), est.poses.size()) < kMinOffsetMatches) return std::nullopt;
   const double interval_s = std::max(median_interval_s(gt), median_interval_s(est));
   const double longest_s = std::max(path_seconds(gt), path_seconds(est));
-  const double step_s = std::max({kMinGridStep, interval_s, longest_s / static_cast<double>(kGridPoints)});
+  double step_s = std::max({kMinGridStep, interval_s, longest_s / static_cast<double>(kGridPoints)});
   const Trajectory sampled = every(est, est.poses.size() / kSearchPoses + 1);
   OffsetError error(gt, sampled);
   TimeOffset result{.ate_rmse_at_zero_m = error.at(0.0, Alignment::kSe3)};
   result.ate_rmse_m = result.ate_rmse_at_zero_m;
-  const std::vector<double> offsets = candidates(gt, est, step_s);
+  std::vector<double> offsets = candidates(gt, est, step_s, kMinCorrelation);
+  if (offsets.empty()) {
+    step_s *= kCoarseSteps;
+    offsets = candidates(gt, est, step_s, kMinCoarseCorrelation);
+  }
   if (offsets.empty()) {
     result.undetermined = "the speeds and rotation rates of both files agree at no offset";
     return result;

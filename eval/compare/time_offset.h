@@ -6,9 +6,10 @@
 ///
 ///   r(lag) = sum_k (a_k - a~)(b_(k-lag) - b~) / sqrt(sum_k (a_k - a~)^2 sum_k (b_(k-lag) - b~)^2)
 ///
-/// a, b: the signal of ground truth and estimate; a~, b~: their means over the common grid points k. The
-/// offset is the candidate with the smallest ATE after similarity alignment, in which a wrong scale is no
-/// offset, refined by golden-section search.
+/// a, b: the signal of ground truth and estimate; a~, b~: their means over the common grid points k. If no
+/// lag agrees, the score is computed once more on a grid of four times the step, over which the noise of
+/// poses is a smaller part of the speed. The offset is the candidate with the smallest ATE after similarity
+/// alignment, in which a wrong scale is no offset, refined by golden-section search.
 #pragma once
 
 #include <optional>

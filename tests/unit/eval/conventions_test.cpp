@@ -8,6 +8,7 @@
 
 #include "eval/compare/time_offset.h"
 #include "eval/trajectory/alignment.h"
+#include "tests/support/random.h"
 #include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::eval {
@@ -179,6 +180,27 @@ TEST(TimeOffset, IsFoundFarAway) {
     ASSERT_TRUE(found);
     EXPECT_EQ(found->undetermined, "") << shift;
     EXPECT_NEAR(found->offset_s, shift, 1e-3);
+  }
+}
+
+// Over the step of the grid, 0.05 s, white noise of 2 cm is a speed of 1 m/s.
+TEST(TimeOffset, IsFoundForPositionsWithNoise) {
+  const auto with_noise = [](Trajectory path, double sigma_m) {
+    Random random(7);
+    for (StampedPose& pose : path.poses) {
+      pose.T_w_f.q = Eigen::Quaterniond::Identity();
+      pose.T_w_f.p += sigma_m * random.normal3();
+    }
+    return path;
+  };
+  const Trajectory gt = with_noise(test::smooth_path(3000, 0.01), 0.0);
+  for (const double shift : {-0.5, 0.5, 4.0}) {
+    Trajectory est = with_noise(test::smooth_path(780, 1.0 / 30.0, 2.0), 0.02);
+    for (StampedPose& pose : est.poses) pose.t = after(pose.t, -shift);
+    const auto found = find_time_offset(gt, est);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->undetermined, "") << shift;
+    EXPECT_NEAR(found->offset_s, shift, 0.02);
   }
 }
 
