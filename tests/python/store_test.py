@@ -56,6 +56,12 @@ def test_columns_are_arrays_with_nan_where_a_run_has_no_metric(results):
     assert sparse  # those of inertial data
 
 
+def test_columns_of_no_runs_have_the_types_of_those_of_runs(results):
+    columns = store.columns([])
+    filled = results.columns()
+    assert all(len(column) == 0 and column.dtype.kind == filled[name].dtype.kind for name, column in columns.items())
+
+
 def test_threads_may_share_a_store(results):
     def read(_):
         runs = [run for _ in range(20) for run in results.runs()]

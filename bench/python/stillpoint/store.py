@@ -12,15 +12,16 @@ import json
 from . import InputError, _store
 from ._store import *  # noqa: F401,F403
 
-_IDENTITY = ("id", "key", "system", "variant", "sequence", "build", "mode", "kind", "seed", "repetition", "axis", "axis_value",
-             "outcome", "detail", "started", "ended", "machine")
+_IDENTITY = {name: str for name in ("id", "key", "system", "variant", "sequence", "build", "mode", "kind", "seed", "repetition",
+                                    "axis", "axis_value", "outcome", "detail", "started", "ended", "machine")}
+_IDENTITY |= {"id": int, "seed": int, "repetition": int, "axis_value": float}
 
 
 def columns(runs):
     """Runs as a dict of arrays: what identifies each run, its outcome, and its metrics by name (NaN: it has none)."""
     import numpy  # not before it is needed: it takes longer to load than all of this package
 
-    result = {name: numpy.array([getattr(run, name) for run in runs]) for name in _IDENTITY}
+    result = {name: numpy.array([getattr(run, name) for run in runs], dtype=kind) for name, kind in _IDENTITY.items()}
     values = [run.metrics for run in runs]
     for name in sorted(set().union(*values)):
         result[name] = numpy.array([metrics.get(name, numpy.nan) for metrics in values])
