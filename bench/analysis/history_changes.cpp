@@ -349,6 +349,15 @@ std::optional<std::size_t> other_data_since(const SubjectHistories& subjects, co
   return first;
 }
 
+/// Whether a subject was measured after `last` on another machine, as when the first one was replaced.
+bool is_measured_elsewhere(const SubjectHistories& subjects, const HistorySubject& name, std::size_t last) {
+  return std::ranges::any_of(subjects, [&](const auto& entry) {
+    HistorySubject same = entry.first;
+    same.host = name.host;
+    return same == name && entry.second.measured.back() > last;
+  });
+}
+
 /// The newest commit of the machine, mode and kind of a subject, if it has more than half of the subjects
 /// that were measured with this one, but not this one.
 std::optional<std::size_t> not_measured_at(const SubjectHistories& subjects, const HistorySubject& name,
@@ -356,6 +365,7 @@ std::optional<std::size_t> not_measured_at(const SubjectHistories& subjects, con
   const auto scope = [](const HistorySubject& subject) {
     return std::tie(subject.host, subject.mode, subject.kind, subject.cores);
   };
+  if (is_measured_elsewhere(subjects, name, last)) return std::nullopt;
   std::size_t newest = last;
   std::vector<const SubjectHistory*> companions;
   for (const auto& [other, history] : subjects) {

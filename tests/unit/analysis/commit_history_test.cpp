@@ -211,6 +211,17 @@ TEST(MissingHistory, AnotherMachineIsNoEndOfTheFirst) {
   EXPECT_EQ(missing_in(store), Found{});
 }
 
+// A variant that is measured at every second commit was not measured at the last one of the first machine.
+TEST(MissingHistory, AVariantThatAnotherMachineMeasuresIsNotMissing) {
+  const TemporaryFolder folder;
+  const Store store(store_of(folder, {{"a", 0.1, manifest_of("A")},
+                                      {"a", 0.1, manifest_of("A"), {.variant = "vio"}},
+                                      {"b", 0.1, manifest_of("A")},
+                                      {"c", 0.1, manifest_of("B")},
+                                      {"c", 0.1, manifest_of("B"), {.variant = "vio"}}}));
+  EXPECT_EQ(missing_in(store), Found{});
+}
+
 TEST(FindCommit, AcceptsAUniquePrefix) {
   CommitHistory history;
   history.commits = {{"abc1", ""}, {"abd2", ""}, {"abc", ""}};
