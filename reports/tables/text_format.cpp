@@ -2,7 +2,9 @@
 #include "reports/tables/text_format.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -201,15 +203,13 @@ std::string interval_text(const eval::RelativeChange& change) {
 
 namespace {
 
+/// A number, which may begin with a sign, as it is; a text as `csv_field`.
 std::string csv_cell(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  std::string quoted(1, '"');
-  for (const char c : cell) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  quoted += '"';
-  return quoted;
+  const char* const begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), value);
+  const bool is_number = error == std::errc{} && end == cell.data() + cell.size();
+  return is_number ? cell : csv_field(cell);
 }
 
 /// A bar of a name would end its cell; those of `escape_markdown` are escaped.

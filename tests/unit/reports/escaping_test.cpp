@@ -38,6 +38,11 @@ TEST(Escaping, QuotesCsvFieldsAndNeutralizesFormulas) {
   EXPECT_EQ(csv_field("=1+1"), "\"'=1+1\"");
 }
 
+TEST(Escaping, NeutralizesFormulasInTablesButKeepsSignsOfNumbers) {
+  EXPECT_EQ(format_table({{"=cmd|'/C calc'!A0", "-1+1", "@a"}, {"-0.5", "+2.0", "n/a"}}, TableStyle::kCsv),
+            "\"'=cmd|'/C calc'!A0\",\"'-1+1\",\"'@a\"\n-0.5,+2.0,n/a\n");
+}
+
 TEST(Escaping, ReplacesInvalidUtf8) {
   const std::string replacement = "\xEF\xBF\xBD";
   EXPECT_EQ(clean_line("a\xFF"), "a" + replacement);
