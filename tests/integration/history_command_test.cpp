@@ -162,6 +162,26 @@ add_custom_target(stillpoint COMMAND ${CMAKE_COMMAND} -E copy ")" STILLPOINT_BIN
   EXPECT_EQ(runs[0].outcome, bench::Outcome::kOk) << runs[0].detail;
 }
 
+// The keys of all runs have the checksum of the beginning.
+TEST(History, EndsWhenASequenceChangesBetweenCommits) {
+  const MadeUpProject project;
+  project.folder().write("change.sh",
+                         "sh build.sh && . ./parameters && [ $NUMBER != 11 ] ||\n  echo '# end' >>'" +
+                             project.file("freiburg1_a/groundtruth.txt") + "'\n");
+  project.folder().write("changing.toml",
+                         "name = \"slam\"\ncommand = [\"{binary}\", \"{sequence}\", \"{out}\", \"1\"]\n"
+                         "layout = \"as_is\"\n[source]\ngit = \"repository\"\nbinary = \"out/slam\"\n"
+                         "build = [\"sh\", \"" +
+                             project.file("change.sh") + "\"]\n");
+  std::vector<std::string> arguments = history_arguments(project, "changed.sqlite");
+  std::ranges::replace(arguments, project.file("slam.toml"), project.file("changing.toml"));
+  arguments.insert(arguments.end(), {"--max-commits", "2"});
+  const ProgramResult result = project.run(arguments);
+  EXPECT_EQ(result.exit_code, 2) << result.out << result.err;
+  EXPECT_NE(result.err.find("groundtruth.txt changed"), std::string::npos) << result.err;
+  EXPECT_EQ(builds_in(project.file("changed.sqlite")), std::vector<std::string>(2, project.commit(12)));
+}
+
 TEST(History, ReportsWhatIsMissing) {
   const MadeUpProject& project = shared_project();
   const auto history = [&](const std::string& range, const std::string& system) {
@@ -205,6 +225,16 @@ TEST(Bisect, FindsEachPlantedCommitInFiveBuilds) {
         std::string::npos)
         << result.out;
   }
+}
+
+TEST(Bisect, RejectsAMetricThatTheRunsDoNotHave) {
+  const MadeUpProject& project = shared_project();
+  const ProgramResult result =
+      project.run({"bisect", "ate_rmse", project.commit(1) + ".." + project.commit(7), "--system",
+                   project.file("slam.toml"), "--plan", project.file("plan.toml"), "--out",
+                   project.file("bisect-unknown")});
+  EXPECT_EQ(result.exit_code, 2) << result.out;
+  EXPECT_NE(result.err.find("did you mean \"ate_rmse_m\""), std::string::npos) << result.err;
 }
 
 TEST(Bisect, SaysThatNothingChanged) {

@@ -71,6 +71,9 @@ class HistorySystem {
                      : with_program(matrix_, {build.program, commit.hash, commit.time});
   }
 
+  /// Without a build.
+  [[nodiscard]] const PlanMatrix& matrix() const { return matrix_; }
+
   /// Name in the dashboard.
   [[nodiscard]] std::string name() const { return external_ ? external_->name : "stillpoint"; }
 
@@ -110,7 +113,9 @@ StoredOutcomes stored_outcomes(const PlanMatrix& matrix, const OutcomeOfRun& sto
 class HistoryRunner {
  public:
   HistoryRunner(const HistoryArguments& arguments, const HistorySystem& system)
-      : arguments_(arguments), system_(system), builds_(system.builds(arguments.builds)) {}
+      : arguments_(arguments), system_(system), builds_(system.builds(arguments.builds)) {
+    require_unchanged_sequences(sequences_, system_.matrix());
+  }
 
   [[nodiscard]] std::vector<SourceCommit> commits() const {
     return builds_.commits(arguments_.range, arguments_.max_commits);
@@ -166,6 +171,7 @@ class HistoryRunner {
       return;
     }
     const PlanMatrix matrix = system_.runs(commit, build);
+    require_unchanged_sequences(sequences_, matrix);
     const PlanReport report = execute_plan(matrix, arguments_.store, {.jobs = arguments_.jobs}, {});
     if (report.interrupted) return;
     ++counts_.executed;
@@ -175,6 +181,7 @@ class HistoryRunner {
   const HistoryArguments& arguments_;
   const HistorySystem& system_;
   SourceBuilds builds_;
+  SequenceWatch sequences_;
   HistoryCounts counts_;
 };
 

@@ -159,6 +159,14 @@ namespace {
 
 constexpr int kLeasePollMs = 200;
 
+/// @throws InputError if a sequence changed since the first call for it
+void require_unchanged(SequenceWatch& watch, const fs::path& sequence) {
+  const std::string changes = watch.changes_of(sequence);
+  if (!changes.empty())
+    throw InputError(sequence.string(), "was changed since the first run: " + changes +
+                                            "; restore it, and run the command again");
+}
+
 /// One call of `run_plan`.
 class PlanRunner {
  public:
@@ -277,21 +285,13 @@ class PlanRunner {
     while (!is_ready(run) && scorer_.pending() > 0) store_next();  // rendering takes long
     try {
       const fs::path folder = folders_.find(matrix_.runs[run].sequence);
-      if (folder.empty()) return;  // the rendering was stopped
-      require_unchanged(folder);
+      if (folder.empty()) return;             // the rendering was stopped
+      require_unchanged(sequences_, folder);  // a program may have written into it
       prepare(run, folder);
       if (acquire(run)) start(run, folder);
     } catch (const InputError& error) {
       store_bad_data(run, error);
     }
-  }
-
-  /// A program may have written into a sequence that later runs read.
-  void require_unchanged(const fs::path& folder) {
-    const std::string changes = sequences_.changes_of(folder);
-    if (!changes.empty())
-      throw InputError(folder.string(), "was changed since the first run: " + changes +
-                                            "; restore it, and run the command again");
   }
 
   /// Requests the lease of a run; counts or postpones the run if it is not granted.
@@ -438,6 +438,12 @@ void prepare_store(const PlanMatrix& matrix, StoreWriter& writer, const PlanOpti
                       .title = matrix.plan.title,
                       .text = matrix.plan.text,
                       .run_keys = matrix.keys});
+}
+
+void require_unchanged_sequences(SequenceWatch& watch, const PlanMatrix& matrix) {
+  for (const PlanSequence& sequence : matrix.sequences) {
+    if (!sequence.rendering && sequence.unavailable_reason.empty()) require_unchanged(watch, sequence.folder);
+  }
 }
 
 PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,

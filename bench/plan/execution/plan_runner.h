@@ -12,6 +12,7 @@
 #include "bench/plan/plan_matrix.h"
 #include "bench/process/child_process.h"
 #include "bench/store/store_writer.h"
+#include "bench/systems/file_states.h"
 
 namespace stillpoint::bench {
 
@@ -98,5 +99,10 @@ void prepare_store(const PlanMatrix& matrix, StoreWriter& writer, const PlanOpti
 /// the store can no longer be written, completed runs remain stored
 [[nodiscard]] PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
                                   const PlanHooks& hooks);
+
+/// Requires that the recorded sequences of a plan are as at the first call with this watch: a plan that is
+/// executed several times has the keys of its expansion.
+/// @throws InputError if a file of one has changed
+void require_unchanged_sequences(SequenceWatch& watch, const PlanMatrix& matrix);
 
 }  // namespace stillpoint::bench

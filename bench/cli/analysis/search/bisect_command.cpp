@@ -4,10 +4,12 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "bench/analysis/comparison.h"
@@ -15,6 +17,9 @@
 #include "bench/cli/analysis/paired_execution.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
+#include "bench/config/spelling.h"
+#include "bench/model/metrics.h"
+#include "bench/plan/execution/plan_runner.h"
 #include "bench/plan/plan_matrix.h"
 #include "bench/systems/source_builds.h"
 #include "core/base/counted.h"
@@ -44,6 +49,26 @@ std::pair<std::string, std::string> ends_of(const std::string& range) {
   return {range.substr(0, dots), bad.empty() ? "HEAD" : bad};
 }
 
+/// @throws InputError if runs succeeded, and none has a value of the metric that can be compared
+void require_metric(const ExecutedPairs& executed, const std::string& metric) {
+  std::set<std::string> names;
+  for (const auto* runs : {&executed.base, &executed.head}) {
+    for (const StoredRun& run : *runs) {
+      for (const Metric& value : run.metrics) {
+        if (gated_metric(without_protocol(value.name)) != nullptr) names.insert(value.name);
+      }
+      for (const ModuleCost& cost : run.costs) names.insert(cost.module);
+    }
+  }
+  if (names.empty() || names.contains(metric) || metric == metric_id::kFailedRuns) return;
+  const std::vector<std::string> known(names.begin(), names.end());
+  throw InputError(
+      "METRIC",
+      fmt::format("\"{}\" is no metric of these runs that can be compared{}; they have: "
+                  "{}, {}",
+                  metric, suggestion(metric, known), fmt::join(known, ", "), metric_id::kFailedRuns));
+}
+
 /// Builds versions and compares them in pairs, each pair of versions in a store of its own: what was executed
 /// is not executed again, and the times of one comparison are interleaved.
 class VersionComparer {
@@ -59,6 +84,7 @@ class VersionComparer {
     for (int pairs = 2; pairs < arguments.max_pairs; pairs = pairs == 2 ? 8 : 2 * pairs)
       numbers_of_pairs_.push_back(pairs);
     numbers_of_pairs_.push_back(arguments.max_pairs);
+    require_unchanged_sequences(sequences_, runs_);
     const auto [good, bad] = ends_of(arguments.range);
     commits_ = {source_.commit(good)};
     for (SourceCommit& commit : source_.between(commits_.front(), source_.commit(bad)))
@@ -88,11 +114,13 @@ class VersionComparer {
   Comparison compare(std::size_t base, std::size_t head, int pairs) {
     const SourceCommit& base_commit = commits_[base];
     const SourceCommit& head_commit = commits_[head];
+    require_unchanged_sequences(sequences_, runs_);
     fs::create_directories(arguments_.out);
     const fs::path store =
         fs::path(arguments_.out) / (base_commit.short_hash() + "-" + head_commit.short_hash() + ".sqlite");
     const ExecutedPairs executed = execute(source_.build(base_commit), source_.build(head_commit),
                                            {base_commit, head_commit}, {pairs, store.string()});
+    require_metric(executed, arguments_.metric);
     return compare_runs(with_metric_only(executed.base, arguments_.metric),
                         with_metric_only(executed.head, arguments_.metric), CompareSource::kPrograms);
   }
@@ -125,6 +153,7 @@ class VersionComparer {
   std::optional<ExternalSystem> external_;
   SourceBuilds source_;
   PlanMatrix runs_;
+  SequenceWatch sequences_;
   std::vector<SourceCommit> commits_;  ///< from the first version to the last one
   std::vector<int> numbers_of_pairs_;
   std::size_t versions_ = 0;
@@ -194,10 +223,11 @@ int search(VersionComparer& versions, const BisectArguments& arguments) {
   }
   const std::optional<FollowedChange> whole = find_change(versions, arguments, 0, last);
   if (!whole) {
-    std::cout << fmt::format(
-        "{} did not change from {} to {} with {}; choose another metric, range or plan\n", arguments.metric,
-        versions.commits().front().short_hash(), versions.commits().back().short_hash(),
-        counted(static_cast<std::size_t>(arguments.max_pairs), "pair"));
+    std::cout << fmt::format("{} did not {} from {} to {} with {}; choose another metric, range or plan\n",
+                             arguments.metric,
+                             arguments.metric == metric_id::kFailedRuns ? "increase" : "change",
+                             versions.commits().front().short_hash(), versions.commits().back().short_hash(),
+                             counted(static_cast<std::size_t>(arguments.max_pairs), "pair"));
     return kExitInconclusive;
   }
   const Bisection found = bisect_versions(versions.commits().size(), [&](std::size_t version) {
