@@ -317,9 +317,10 @@ std::vector<std::array<Eigen::Vector3d, 2>> inertial_means(std::span<const ImuSa
 }
 
 /// Whether the means of a sensor over 0.05 s change within 0.5 s by more than from one to the next, as those
-/// of white noise do not. The time offset is estimated from such changes: of a camera that does not move,
-/// noise alone would seem to show it.
-bool shows_time_offset(std::span<const ImuSample> samples) {
+/// of white noise do not. Of a camera that does not move, noise alone would seem to show the time offset,
+/// which is estimated from such changes, and the readout time, which is estimated from velocities in the
+/// image.
+bool shows_motion(std::span<const ImuSample> samples) {
   constexpr std::size_t kLag = 10;
   constexpr double kMinRatio = 2.0;  // of squares
   const auto means = inertial_means(samples, 0.05);
@@ -443,7 +444,10 @@ class Calibration {
     if (solution_.usable) solution_.sigmas = rounds_.deviations(solution_, is_variable_);
     if (!solution_.sigmas) return;
     observed_ = observed_values(*solution_.sigmas, priors_, is_variable_);
-    if (!shows_time_offset(input_.imu)) set(observed_, kTimeOffset, 1, false);
+    if (!input_.imu.empty() && !shows_motion(input_.imu)) {
+      set(observed_, kTimeOffset, 1, false);
+      set(observed_, kReadout, 1, false);
+    }
     if (rounds_.interrupted() || !set_back_unobserved(solution_, input_.stated, observed_, is_variable_))
       return;
     rounds_.run_round(solution_, is_variable_, rounds_.count());

@@ -39,8 +39,8 @@
 /// over the observed parameters p, and the whole is solved again with data of such larger deviations against
 /// the priors. What both halves have in common is added as a constant per parameter, see calibrate.cpp.
 ///
-/// The time offset is observed only if the inertial data changes by more than its noise, which has
-/// derivatives at rest, too.
+/// Time offset and readout time are observed only if the inertial data, if there is any, changes by more than
+/// its noise: noise has derivatives at rest, too.
 ///
 /// Values that are not observed, but for components of poses, get the stated ones, and the others are
 /// estimated once more: with deviations as if the stated ones were true, but for axes of inertial sensors,

@@ -213,7 +213,7 @@ TEST(Calibrate, FindsDelayAndFrameOfAGroundTruth) {
 }
 
 // The noise of the gyroscope has a derivative, too, which is no motion.
-TEST(Calibrate, ACameraAtRestDoesNotShowTheTimeOffset) {
+TEST(Calibrate, ACameraAtRestShowsNeitherTimeOffsetNorReadoutTime) {
   SimulatedMotion motion = recorded_motion(5);
   motion.stop_s = 1e-9;  // and at rest 1 s later
   CalibrationInput input = recording(motion, stated_rig(5));
@@ -224,6 +224,7 @@ TEST(Calibrate, ACameraAtRestDoesNotShowTheTimeOffset) {
   const CalibrationResult result = calibrate(input, {.hold_out = false});
   EXPECT_EQ(parameter(result, "time_offset_s").outcome, ParameterOutcome::kNotObserved);
   EXPECT_EQ(result.calibration.rig.time_offset_s, 0.0);
+  EXPECT_EQ(parameter(result, "rolling_shutter_s").outcome, ParameterOutcome::kNotObserved);
 }
 
 TEST(Calibrate, WithoutAnImuTheDepthScaleStaysAsStated) {
