@@ -289,9 +289,8 @@ int print(const Findings& findings, bool json) {
     std::cout << report::data_json(table);
   } else {
     for (const std::string& sentence : findings.sentences) std::cout << sentence << '\n';
-    std::cout << (findings.sentences.empty()
-                      ? findings.none + "\n"
-                      : fmt::format("{} {}s\n", findings.sentences.size(), findings.column));
+    std::cout << (findings.sentences.empty() ? findings.none + "\n"
+                                             : counted(findings.sentences.size(), findings.column) + "\n");
   }
   return findings.sentences.empty() ? kExitOk : kExitFindings;
 }
@@ -380,7 +379,8 @@ int salvage(const StoreArguments& arguments) {
   for (const auto& [table, rows] : report.saved) std::cout << fmt::format("saved {:<12} {}\n", table, rows);
   for (const std::string& loss : report.losses) std::cout << "lost: " << loss << '\n';
   std::cout << (report.losses.empty() ? "nothing is lost\n"
-                                      : fmt::format("{} losses\n", report.losses.size()));
+                                      : fmt::format("{} {}\n", report.losses.size(),
+                                                    report.losses.size() == 1 ? "loss" : "losses"));
   return report.losses.empty() ? kExitOk : kExitFindings;
 }
 
