@@ -50,6 +50,7 @@ std::string SequenceWatch::changes_of(const fs::path& sequence) {
   constexpr std::size_t kShownFiles = 3;
   FileStates now;
   add_files(now, sequence, kDepth, {});
+  std::erase_if(now, [](const auto& file) { return file.first.filename().native().starts_with('.'); });
   const FileStates& first = first_.try_emplace(sequence, now).first->second;
   const std::vector<fs::path> files = changed_files(first, now);
   std::vector<std::string> texts;

@@ -31,7 +31,8 @@ void add_files(FileStates& states, const std::filesystem::path& folder, int dept
 [[nodiscard]] std::vector<std::filesystem::path> changed_files(const FileStates& before,
                                                                const FileStates& after);
 
-/// Finds changes of sequences by the sizes and times of their files.
+/// Finds changes of sequences by the sizes and times of their files. Hidden files, as those of file managers,
+/// editors and NFS, do not count: no reader reads them.
 class SequenceWatch {
  public:
   /// The files of a sequence that changed since the first call for it, e.g. "seq/imu.txt removed, seq/a.txt
