@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/score.h"
 
+#include <array>
+#include <cstdio>
+#include <string>
+
 #include "eval/trajectory/orientations.h"
 
 namespace stillpoint::eval {
@@ -30,6 +34,17 @@ Score score(const Trajectory& gt, const Trajectory& est, const ScoreOptions& opt
     result.first_pose_s = first_pose_seconds(est, *start);
   }
   return result;
+}
+
+std::string sparse_truth_doubt(const Trajectory& gt, const Score& score) {
+  const std::size_t pairs = score.ate ? score.ate->pairs : 0;
+  if (gt.poses.empty() || 2 * pairs >= score.poses) return "";
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "ground truth: has a pose within %g s for %zu of %zu poses only; ",
+                ScoreOptions{}.max_difference_s, pairs, score.poses);
+  const std::string rpe_note = score.rpe ? sparse_truth_note(gt) : "";
+  return text.data() +
+         (rpe_note.empty() ? "the errors are those of these" : "the ATE is that of these; " + rpe_note);
 }
 
 }  // namespace stillpoint::eval

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "eval/metrics/ate.h"
@@ -40,5 +41,10 @@ struct Score {
 /// may be empty
 /// @param options the defaults give the metrics of the result file
 [[nodiscard]] Score score(const Trajectory& gt, const Trajectory& est, const ScoreOptions& options = {});
+
+/// That most poses of an estimate have no true pose, and what its errors are then; empty if they have.
+/// @param gt ground truth of the score
+/// @param score with the default limit of the stamps
+[[nodiscard]] std::string sparse_truth_doubt(const Trajectory& gt, const Score& score);
 
 }  // namespace stillpoint::eval

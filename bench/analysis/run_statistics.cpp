@@ -112,16 +112,28 @@ std::string coverage_doubt(const eval::Pair& coverages, const std::string& metri
   return fmt::format("coverage {:.2f}, base {:.2f}: not comparable", coverages.changed, coverages.base);
 }
 
-/// Of an RPE of few pairs of poses in a run of either variant.
-std::string few_pairs_doubt(std::span<const StoredRun> runs, const std::string& base, const AblationRow& row,
-                            const std::string& metric) {
+/// Of an RPE of few pairs of poses, or a doubtful ground truth or trajectory, in a run of either variant; of
+/// several sequences the latter are named only.
+std::string run_doubt(std::span<const StoredRun> runs, const std::string& base, const AblationRow& row,
+                      const std::string& metric) {
   std::vector<const StoredRun*> compared;
+  std::vector<std::string> doubtful;
   for (const StoredRun& run : runs) {
     const RunIdentity& identity = run.identity;
     const bool is_of_row = row.sequence.empty() || identity.sequence == row.sequence;
-    if (is_of_row && (identity.variant == base || identity.variant == row.variant)) compared.push_back(&run);
+    if (!is_of_row || (identity.variant != base && identity.variant != row.variant)) continue;
+    compared.push_back(&run);
+    if (!doubtful_error_note(std::span(&compared.back(), 1), metric).empty() &&
+        std::ranges::find(doubtful, identity.sequence) == doubtful.end())
+      doubtful.push_back(identity.sequence);
   }
-  return few_rpe_pairs_note(compared, metric);
+  std::string doubt;
+  if (!row.sequence.empty()) {
+    doubt = doubtful_error_note(compared, metric);
+  } else if (!doubtful.empty()) {
+    doubt = fmt::format("doubtful errors on {}", fmt::join(doubtful, ", "));
+  }
+  return joined_notes({few_rpe_pairs_note(compared, metric), doubt});
 }
 
 void add_doubt(AblationRow& row, const std::string& doubt) {
@@ -262,9 +274,8 @@ std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::s
     const auto with_value = static_cast<std::size_t>(std::ranges::count_if(
         members[i], [&](const StoredRun* run) { return value_of(*run, metric).has_value(); }));
     rows[i].without_value = rows[i].runs - rows[i].failed - with_value;
-    rows[i].doubt = few_rpe_pairs_note(members[i], metric);
-    if (rows[i].doubt.empty()) rows[i].doubt = doubtful_error_note(members[i], metric);
-    if (rows[i].doubt.empty()) rows[i].doubt = scatter_note(members[i], metric);
+    rows[i].doubt = joined_notes({few_rpe_pairs_note(members[i], metric),
+                                  doubtful_error_note(members[i], metric), scatter_note(members[i], metric)});
     rows[i].copies = with_value - (rows[i].spread ? rows[i].spread->count : 0);
   }
   return rows;
@@ -286,7 +297,7 @@ std::vector<AblationRow> ablation(std::span<const StoredRun> runs, const std::st
     const SubjectTable table = subjects_of(runs, variant, metric);
     for (const std::string& sequence : sequences) {
       rows.push_back(row_of({.variant = variant, .sequence = sequence}, base_table, table, metric));
-      add_doubt(rows.back(), few_pairs_doubt(runs, base, rows.back(), metric));
+      add_doubt(rows.back(), run_doubt(runs, base, rows.back(), metric));
     }
   }
   return rows;
@@ -333,6 +344,16 @@ std::vector<StageDifference> stage_differences(const std::string& frames, const 
   return stages;
 }
 
+namespace {
+
+std::string label_of(const RunIdentity& identity) {
+  return fmt::format(
+      "{} {} seed {}{}", identity.sequence, identity.variant, identity.seed,
+      identity.axis.empty() ? "" : fmt::format(" {} = {}", identity.axis, identity.axis_value));
+}
+
+}  // namespace
+
 std::vector<RepetitionRow> repetition_report(const Store& store, std::span<const StoredRun> runs) {
   std::map<std::string, std::vector<const StoredRun*>> groups;
   for (const StoredRun& run : runs) {
@@ -344,10 +365,7 @@ std::vector<RepetitionRow> repetition_report(const Store& store, std::span<const
   for (const auto& [key, repeated] : groups) {
     if (repeated.size() < 2) continue;
     const RunIdentity& identity = repeated.front()->identity;
-    RepetitionRow row{
-        .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed),
-        .identity = identity,
-        .repetitions = repeated.size()};
+    RepetitionRow row{.label = label_of(identity), .identity = identity, .repetitions = repeated.size()};
     std::set<std::string> trajectories;
     const StoredRun* first = nullptr;
     for (const StoredRun* run : repeated) {
@@ -392,9 +410,7 @@ void compare_poses(const Trajectory& a, const Trajectory& b, ExecutionDifference
 ExecutionDifference difference(const Store& store, const StoredRun& run, const Store& other,
                                const StoredRun& counterpart) {
   const RunIdentity& identity = run.identity;
-  ExecutionDifference row{
-      .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed),
-      .identity = identity};
+  ExecutionDifference row{.label = label_of(identity), .identity = identity};
   if (run.outcome != Outcome::kOk || counterpart.outcome != Outcome::kOk) {
     row.failure = outcome_name(run.outcome) + ", other " + outcome_name(counterpart.outcome);
     return row;

@@ -25,7 +25,7 @@ struct RunSpread {
   std::size_t copies = 0;              ///< succeeded runs whose result another one has to the bit
   std::optional<eval::Spread> spread;  ///< over replicates of successful runs; `worst`
                                        ///< respects the direction of the metric
-  std::string doubt;                   ///< `few_rpe_pairs_note` or `scatter_note`; empty without one
+  std::string doubt;                   ///< notes of bench/model/run_notes.h; empty without one
 };
 
 /// For a deterministic metric, runs with equal trajectories count as one replicate, whatever their seeds: a

@@ -45,6 +45,14 @@ std::string strict_protocol(const std::string& name, std::string_view metric) {
 
 }  // namespace
 
+std::string joined_notes(std::initializer_list<std::string> notes) {
+  std::string joined;
+  for (const std::string& note : notes) {
+    if (!note.empty()) joined += (joined.empty() ? "" : "; ") + note;
+  }
+  return joined;
+}
+
 std::string missing_boxes_note(const std::vector<const StoredRun*>& runs) {
   const StoredRun* worst = nullptr;
   double most = 0.0;

@@ -4,6 +4,7 @@
 /// that were measured while other processes used the machine.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,9 @@ namespace stillpoint::bench {
 /// Errors over fractions of the frames that differ by more than this are not ranked: a run that lost most of
 /// its track has a small error over the rest.
 inline constexpr double kMaxCoverageGap = 0.2;
+
+/// The notes that are not empty, separated by semicolons.
+[[nodiscard]] std::string joined_notes(std::initializer_list<std::string> notes);
 
 /// Footnote about the run with the most frames without recorded boxes: "no recorded boxes in 12 of 240
 /// frames", and "in up to 12 of 240 frames" for several runs; empty if there is no such run. Failed runs are

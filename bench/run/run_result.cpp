@@ -129,6 +129,33 @@ std::vector<eval::TimeSpan> fault_spans(std::span<const datasets::SensorFault> f
   return spans;
 }
 
+/// Whether a fault of images, depth or boxes has a frame to change, and another one begins before the last
+/// frame.
+bool is_in_frames(const datasets::SensorFault& fault, std::span<const Timestamp> frame_times) {
+  using enum datasets::FaultTarget;
+  const datasets::FaultTarget target = datasets::descriptor_of(fault.kind).target;
+  const std::vector<datasets::FaultInterval> intervals =
+      datasets::fault_intervals(fault, frame_times.front(), frame_times.back());
+  const bool is_of_frames = target == kImages || target == kDepth || target == kDetections;
+  if (!is_of_frames || fault.kind == datasets::FaultKind::kDropped) return !intervals.empty();
+  return std::ranges::any_of(intervals, [&](const datasets::FaultInterval& interval) {
+    const auto next = std::ranges::lower_bound(frame_times, interval.begin);
+    return next != frame_times.end() && *next < interval.end;
+  });
+}
+
+std::vector<std::string> fault_warnings(std::span<const datasets::SensorFault> faults,
+                                        std::span<const Timestamp> frame_times) {
+  std::vector<std::string> warnings;
+  for (const datasets::SensorFault& fault : faults) {
+    if (frame_times.empty() || is_in_frames(fault, frame_times)) continue;
+    warnings.push_back(fmt::format(
+        "fault: {} is active at none of the frames, which are in {:.3g} s: the run is undisturbed",
+        datasets::fault_text(fault), seconds_between(frame_times.front(), frame_times.back())));
+  }
+  return warnings;
+}
+
 /// Over the frames that have one.
 std::optional<double> mean_nis(std::span<const Innovations> frames,
                                std::optional<double> Innovations::*part) {
@@ -190,7 +217,6 @@ std::vector<eval::ConventionFinding> conventions_of(const RunResult& result, boo
 /// that does not.
 std::vector<std::string> truth_warnings(const RunResult& result) {
   std::vector<std::string> warnings;
-  const std::size_t pairs = result.score.ate ? result.score.ate->pairs : 0;
   for (const eval::ConventionFinding& finding : result.conventions) {
     if (finding.convention == eval::Convention::kScale) {
       warnings.push_back("trajectory: " + finding.message);
@@ -199,15 +225,22 @@ std::vector<std::string> truth_warnings(const RunResult& result) {
                          "; `stillpoint diagnose` tests the ground truth");
     }
   }
-  if (warnings.empty() && !result.gt.poses.empty() && 2 * pairs < result.score.poses) {
-    warnings.push_back(fmt::format(
-        "ground truth: has a pose within {} s for {} of {} poses only; the errors are those of these",
-        eval::ScoreOptions{}.max_difference_s, pairs, result.score.poses));
-  }
+  if (std::string doubt = eval::sparse_truth_doubt(result.gt, result.score);
+      warnings.empty() && !doubt.empty())
+    warnings.push_back(std::move(doubt));
   return warnings;
 }
 
 }  // namespace
+
+std::string error_doubt(std::span<const std::string> warnings) {
+  std::string doubt;
+  for (const std::string& text : warnings) {
+    if (text.starts_with("trajectory: ") || text.starts_with("ground truth: ") || text.starts_with("fault: "))
+      doubt += (doubt.empty() ? "" : "; ") + text;
+  }
+  return doubt;
+}
 
 RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
                     std::span<const datasets::SensorFault> faults) {
@@ -225,6 +258,10 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
   result.score = eval::score(result.gt, run.trajectory, options);
   if (run.imu_rate) result.imu_rate = score_imu_rate(result.gt, *run.imu_rate, run.trajectory);
   if (run.loops) result.loops = score_loops(result.gt, run.trajectory, *run.loops);
+  if (result.outcome != Outcome::kInterrupted) {
+    for (std::string& warning : fault_warnings(faults, options.expected_times))
+      result.warnings.push_back(std::move(warning));
+  }
   if (!faults.empty())
     result.honesty = eval::honesty(result.gt, run.claims, fault_spans(faults, options.expected_times));
   result.run = std::move(run);

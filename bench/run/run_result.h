@@ -36,6 +36,10 @@ struct RunResult {
 /// What the metrics of the run are computed from; refers to `result`.
 [[nodiscard]] Measurements measurements_of(const RunResult& result);
 
+/// The warnings of a run that make its errors doubtful: about its trajectory, the ground truth and injected
+/// faults; separated by semicolons, empty without any.
+[[nodiscard]] std::string error_doubt(std::span<const std::string> warnings);
+
 /// Scores a run against the sequence's ground truth, transformed to the camera frame. An interrupted run is
 /// scored on its processed frames.
 /// @param faults that were injected

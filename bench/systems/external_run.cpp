@@ -318,7 +318,8 @@ RunOutcome scored(const ExternalSystem& system, const RunRequest& request, const
   run.claims = claims_of(output.trajectory, std::span(info.frame_times).first(run.summary.frames));
   run.trajectory = std::move(output.trajectory);
   const RunResult score = score_run(info, std::move(run), faults_of(request));
-  if (!score.conventions.empty()) result.detail = one_line(score.conventions.front().message);
+  result.detail =
+      one_line(score.conventions.empty() ? error_doubt(score.warnings) : score.conventions.front().message);
   result.metrics = measured_metrics({.scored = measurements_of(score).scored, .honesty = score.honesty});
   if (is_scaled) state_fitted_scale(result.metrics);
   result.attachments["trajectory"] = std::move(output.text);

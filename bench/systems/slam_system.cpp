@@ -11,6 +11,7 @@
 #include "bench/record/result_values.h"
 #include "bench/record/run_environment.h"
 #include "bench/record/run_files.h"
+#include "bench/run/run_result.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
@@ -37,15 +38,6 @@ constexpr StoredFile kStoredFiles[] = {{"trajectory.tum", "trajectory"}, {"timin
 std::string message_of(const ProcessResult& process) {
   const std::string line = last_line(process.messages);
   return line.starts_with(kErrorPrefix) ? line.substr(kErrorPrefix.size()) : line;
-}
-
-/// The first warning of a result about its errors; empty without one.
-std::string truth_doubt(const Json& warnings) {
-  for (const Json& warning : warnings) {
-    const auto text = warning.get<std::string>();
-    if (text.starts_with("trajectory: ") || text.starts_with("ground truth: ")) return text;
-  }
-  return "";
 }
 
 RunOutcome without_result(const ProcessResult& process) {
@@ -146,8 +138,9 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& 
     outcome.outcome = outcome_of(result.at("status").get<std::string>());
     // By another process: a worker releases the runs that it interrupts itself.
     if (outcome.outcome == Outcome::kInterrupted) outcome.outcome = Outcome::kCrashed;
-    outcome.detail = result.at("failure").is_string() ? result.at("failure").get<std::string>()
-                                                      : truth_doubt(result.value("warnings", Json::array()));
+    const auto warnings = result.value("warnings", std::vector<std::string>{});
+    outcome.detail =
+        result.at("failure").is_string() ? result.at("failure").get<std::string>() : error_doubt(warnings);
     outcome.metrics = stored_metrics(result);
     outcome.costs = module_costs(result.at("timings"));
     outcome.manifest = without_start_time(eval::read_text_file(request.work / "manifest.json"));

@@ -41,16 +41,6 @@ double path_seconds(const Trajectory& path) {
   return seconds_between(path.poses.front().t, path.poses.back().t);
 }
 
-/// Of at most `kIntervals`, evenly spread.
-double median_interval_s(const Trajectory& path) {
-  constexpr std::size_t kIntervals = 20000;
-  const std::size_t step = path.poses.size() / kIntervals + 1;
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < path.poses.size(); i += step)
-    intervals.push_back(seconds_between(path.poses[i - 1].t, path.poses[i].t));
-  return percentile(intervals, 0.5).value_or(0.0);
-}
-
 /// Speed [m/s] and rotation rate [rad/s] between grid points; NaN in gaps.
 using Signals = std::array<std::vector<double>, 2>;
 
@@ -135,7 +125,7 @@ std::vector<double> candidates(const Trajectory& gt, const Trajectory& est, doub
 class OffsetError {
  public:
   OffsetError(const Trajectory& gt, const Trajectory& est)
-      : gt_(gt), est_(est), max_gap_s_(std::max(0.11, 1.1 * median_interval_s(gt))) {}
+      : gt_(gt), est_(est), max_gap_s_(std::max(0.11, 1.1 * median_pose_interval_s(gt))) {}
 
   /// Infinite with fewer than the required matches, which rejects offsets that move the estimate beyond the
   /// ground truth.
@@ -224,7 +214,7 @@ std::string doubt(const OffsetError& error, const Minimum& best, const std::vect
 
 std::optional<TimeOffset> find_time_offset(const Trajectory& gt, const Trajectory& est) {
   if (std::min(gt.poses.size(), est.poses.size()) < kMinOffsetMatches) return std::nullopt;
-  const double interval_s = std::max(median_interval_s(gt), median_interval_s(est));
+  const double interval_s = std::max(median_pose_interval_s(gt), median_pose_interval_s(est));
   const double longest_s = std::max(path_seconds(gt), path_seconds(est));
   double step_s = std::max({kMinGridStep, interval_s, longest_s / static_cast<double>(kGridPoints)});
   const Trajectory sampled = every(est, est.poses.size() / kSearchPoses + 1);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -281,8 +282,26 @@ StrictRpeResult strict_rpe(MatchView matches, double delta_s) {
 }
 
 std::vector<MatchedPose> strict_matches(const Trajectory& gt, const Trajectory& est, double offset_s) {
-  constexpr double kMaxGap = 0.11;  // [s]
-  return matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
+  return matched_poses(gt, est, associate_interpolated(gt, est, kStrictMaxGap, offset_s));
+}
+
+double median_pose_interval_s(const Trajectory& path) {
+  constexpr std::size_t kIntervals = 20000;
+  const std::size_t step = path.poses.size() / kIntervals + 1;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < path.poses.size(); i += step)
+    intervals.push_back(seconds_between(path.poses[i - 1].t, path.poses[i].t));
+  return percentile(intervals, 0.5).value_or(0.0);
+}
+
+std::string sparse_truth_note(const Trajectory& gt) {
+  const double interval_s = median_pose_interval_s(gt);
+  if (interval_s <= kStrictMaxGap) return "";
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "the ground truth has one pose per %.3g s: RPE compares poses with one up to %.3g s away",
+                interval_s, 0.5 * interval_s);
+  return text.data();
 }
 
 namespace {

@@ -36,6 +36,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/fields.h"
@@ -46,6 +47,9 @@ namespace stillpoint::eval {
 
 /// An RPE of fewer pairs is marked in tables and not ranked.
 inline constexpr std::size_t kFewRpePairs = 10;
+
+/// Of strict protocols: to each neighbor in the ground truth [s], one interval at 10 Hz plus jitter.
+inline constexpr double kStrictMaxGap = 0.11;
 
 /// Start and end of a relative motion, as indices of matches.
 struct PosePair {
@@ -127,6 +131,12 @@ struct RpeResult {
 [[nodiscard]] std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est,
                                            const RpeOptions& options = {});
 
+/// Median interval of at most 20000 evenly spread pairs of consecutive poses [s]; 0 for fewer than two poses.
+[[nodiscard]] double median_pose_interval_s(const Trajectory& path);
+
+/// What `rpe` compares with where the ground truth has less than one pose per `kStrictMaxGap`; else empty.
+[[nodiscard]] std::string sparse_truth_note(const Trajectory& gt);
+
 struct StrictRpe {
   Statistics translation_m;  ///< over delta_s
   Statistics rotation_deg;
@@ -144,7 +154,7 @@ struct StrictRpeResult {
 [[nodiscard]] StrictRpeResult strict_rpe(MatchView matches, double delta_s);
 
 /// Matches for the strict protocols: ground truth interpolated at the stamp of each estimated pose, between
-/// neighbors that are both less than 0.11 s away (one interval at 10 Hz, plus jitter).
+/// neighbors that are both less than `kStrictMaxGap` away.
 [[nodiscard]] std::vector<MatchedPose> strict_matches(const Trajectory& gt, const Trajectory& est,
                                                       double offset_s = 0.0);
 

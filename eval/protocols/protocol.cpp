@@ -136,17 +136,6 @@ RpeEvaluation evo_rpe(MatchView matches, const ProtocolOptions& options) {
   return result;
 }
 
-constexpr double kStrictMaxGap = 0.11;  // [s], to each neighbor in the ground truth
-
-/// Median interval of the ground truth [s]; 0 for fewer than two poses.
-double gt_interval_s(const Trajectory& trajectory) {
-  std::vector<double> intervals;
-  intervals.reserve(trajectory.poses.size());
-  for (std::size_t i = 1; i < trajectory.poses.size(); ++i)
-    intervals.push_back(seconds_between(trajectory.poses[i - 1].t, trajectory.poses[i].t));
-  return percentile(intervals, 0.5).value_or(0.0);
-}
-
 RpeEvaluation tum_rpe(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
   const std::optional<RpeResult> relative =
@@ -169,20 +158,6 @@ RpeEvaluation tum_rpe(const EvaluationInput& input) {
   return result;
 }
 
-/// The RPE of the tool compares with the closest ground truth up to two of its intervals away, where the ATE
-/// has a limit of 20 ms: the error contains the motion in between.
-void note_sparse_ground_truth(Evaluation& evaluation, const EvaluationInput& input) {
-  const double interval_s = gt_interval_s(input.gt);
-  if (interval_s <= kStrictMaxGap || evaluation.pairs == input.est.poses.size()) return;
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "the ground truth has one pose per %.3g s: RPE compares poses with one up to %.3g s away; see "
-      "strict:se3",
-      interval_s, 0.5 * interval_s);
-  evaluation.notes.emplace_back(text);
-}
-
 Evaluation evaluate_compat_tum(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
   const auto absolute = [&] {
@@ -193,7 +168,9 @@ Evaluation evaluate_compat_tum(const EvaluationInput& input) {
                                              : ate_evaluation(aligned(matches, options), options);
   };
   Evaluation evaluation = with_rpe(absolute(), tum_rpe(input));
-  if (evaluation.rpe_pairs > 0) note_sparse_ground_truth(evaluation, input);
+  const bool is_compared_elsewhere = evaluation.rpe_pairs > 0 && evaluation.pairs < input.est.poses.size();
+  if (const std::string note = sparse_truth_note(input.gt); is_compared_elsewhere && !note.empty())
+    evaluation.notes.push_back(note + "; see strict:se3");
   return evaluation;
 }
 
@@ -258,7 +235,7 @@ constexpr double kMaxHold = 1.0;  // [s], validity of a pose
 std::vector<std::string> association_notes(const EvaluationInput& input, std::size_t matches) {
   std::vector<std::string> notes;
   char text[240];
-  const double interval_s = gt_interval_s(input.gt);
+  const double interval_s = median_pose_interval_s(input.gt);
   const double max_gap_s = input.options.max_difference_s.value_or(kStrictMaxGap);
   if (matches < input.est.poses.size()) {
     std::snprintf(text, sizeof text, "%zu of %zu poses dropped: no ground truth close enough",

@@ -60,6 +60,19 @@ std::optional<double> median_cost(const std::vector<const StoredRun*>& runs, std
   return eval::percentile(values, 0.5);
 }
 
+std::string load_note(const std::vector<const StoredRun*>& runs) {
+  const std::optional<double> load = median_of(runs, metric_id::kOtherLoad);
+  if (median_of(runs, metric_id::kQuiet) != 0.0 || !load) return "";
+  return fmt::format("the machine was not idle: other processes used {:.0f} % of the CPU", 100.0 * *load);
+}
+
+std::string doubts_of(const std::vector<const StoredRun*>& runs) {
+  const std::string_view headline = headline_metric().id;
+  return joined_notes({missing_boxes_note(runs), doubtful_error_note(runs, headline), load_note(runs),
+                       protocol_difference_note(runs, headline), scatter_note(runs, headline),
+                       few_rpe_pairs_note(runs, metric_id::kRpeTranslation), innovation_note(runs)});
+}
+
 /// A row with availability, outcome and reason.
 BenchRow row_with_outcome(const std::vector<const StoredRun*>& runs, const std::string& unavailable_reason) {
   BenchRow row{.is_available = unavailable_reason.empty(), .reason = unavailable_reason};
@@ -70,17 +83,7 @@ BenchRow row_with_outcome(const std::vector<const StoredRun*>& runs, const std::
       row.reason = run->detail;
     }
   }
-  if (row.reason.empty()) row.reason = missing_boxes_note(runs);
-  if (row.reason.empty()) row.reason = doubtful_error_note(runs, headline_metric().id);
-  const std::optional<double> load = median_of(runs, metric_id::kOtherLoad);
-  if (row.reason.empty() && median_of(runs, metric_id::kQuiet) == 0.0 && load) {
-    row.reason =
-        fmt::format("the machine was not idle: other processes used {:.0f} % of the CPU", 100.0 * *load);
-  }
-  if (row.reason.empty()) row.reason = protocol_difference_note(runs, headline_metric().id);
-  if (row.reason.empty()) row.reason = scatter_note(runs, headline_metric().id);
-  if (row.reason.empty()) row.reason = few_rpe_pairs_note(runs, metric_id::kRpeTranslation);
-  if (row.reason.empty()) row.reason = innovation_note(runs);
+  if (row.reason.empty()) row.reason = doubts_of(runs);
   return row;
 }
 

@@ -121,6 +121,26 @@ TEST(Ablation, AnRpeOfFewPairsIsDoubtful) {
   EXPECT_EQ(rows[2].doubt, rows[0].doubt);
 }
 
+TEST(Ablation, ErrorsAgainstADoubtfulGroundTruthAreDoubtful) {
+  std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("wo", "a", 1, 0.4),
+                                 run_of("full", "b", 1, 1.0), run_of("wo", "b", 1, 0.9)};
+  runs[1].detail = "ground truth: has a pose within 0.02 s for 6 of 90 poses only";
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].doubt, "doubtful errors on a");
+  EXPECT_EQ(rows[1].doubt, runs[1].detail);
+  EXPECT_EQ(rows[2].doubt, "");
+}
+
+TEST(RunSpreads, StateEveryDoubt) {
+  std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0)};
+  runs[0].metrics = {{"rpe_trans_rmse_m_per_s", "", "m/s", 0.1}, {"rpe_pairs", "", "", 5.0}};
+  runs[0].detail = "ground truth: is sparse";
+  const std::vector<RunSpread> rows = run_spreads(runs, "rpe_trans_rmse_m_per_s");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].doubt, "RPE of only 5 pairs of poses: not ranked; ground truth: is sparse");
+}
+
 TEST(Ablation, AChangeFromZeroHasADifferenceButNoRatio) {
   std::vector<StoredRun> runs;
   for (int seed = 1; seed <= 6; ++seed) {
@@ -216,7 +236,8 @@ TEST(RepetitionReport, ReportsTheFirstDifferenceBetweenRepetitions) {
   const std::filesystem::path file = folder.path() / "store.sqlite";
   StoreWriter writer(file);
   for (const std::int64_t repetition : {1, 2, 3}) {
-    const RunIdentity identity{.variant = "vo", .sequence = "a", .repetition = repetition};
+    const RunIdentity identity{
+        .variant = "vo", .sequence = "a", .repetition = repetition, .axis = "param.n", .axis_value = 2.0};
     static_cast<void>(writer.acquire(identity));
     const std::string last = repetition == 3 ? "other" : "same";
     writer.finish(identity,
@@ -226,6 +247,7 @@ TEST(RepetitionReport, ReportsTheFirstDifferenceBetweenRepetitions) {
   const std::vector<RepetitionRow> rows = repetition_report(store, store.runs());
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].repetitions, 3u);
+  EXPECT_EQ(rows[0].label, "a vo seed 1 param.n = 2");
   EXPECT_EQ(rows[0].distinct_trajectories, 2u);
   EXPECT_EQ(rows[0].first_difference, "frame 0, tracking");
 }

@@ -82,7 +82,31 @@ TEST(RunResult, WarnsOfGroundTruthThatIsLateOrSparse) {
   std::erase_if(sparse.ground_truth.trajectory.poses, [&](const StampedPose& pose) {
     return pose.t.ns % 1'000'000'000 != info.frame_times.front().ns % 1'000'000'000;
   });
-  expect_warning(sparse, "ground truth: has a pose within 0.02 s for 6 of 60 poses");
+  expect_warning(sparse,
+                 "ground truth: has a pose within 0.02 s for 6 of 60 poses only; the ATE is that of these; "
+                 "the ground truth has one pose per 1 s: RPE compares poses with one up to 0.5 s away");
+  datasets::SequenceInfo partial = info;
+  partial.ground_truth.trajectory.poses.resize(20);
+  expect_warning(partial,
+                 "ground truth: has a pose within 0.02 s for 20 of 60 poses only; the errors are those of");
+}
+
+TEST(RunResult, WarnsOfAFaultThatNoFrameHas) {
+  datasets::SequenceInfo info = straight_sequence();
+  std::erase_if(info.frame_times, [&](Timestamp t) {
+    const double elapsed_s = seconds_between(info.frame_times.front(), t);
+    return elapsed_s > 2.0 && elapsed_s < 3.05;
+  });
+  const auto doubt = [&](const char* fault) {
+    const std::vector<datasets::SensorFault> faults = {datasets::parse_fault(fault)};
+    return error_doubt(score_run(info, perfect_run(info, kFrames), faults).warnings);
+  };
+  EXPECT_EQ(doubt("blank:start=1,duration=0.5"), "");
+  EXPECT_EQ(doubt("imu_gap:start=2.1,duration=0.5"), "");
+  EXPECT_EQ(doubt("dropped:start=2.01,duration=1"), "");
+  EXPECT_EQ(doubt("focal_error:amount=2"), "");
+  EXPECT_NE(doubt("blank:start=2.01,duration=1").find("is active at none of the frames"), std::string::npos);
+  EXPECT_NE(doubt("imu_gap:start=100").find("fault: imu_gap:start=100"), std::string::npos);
 }
 
 TEST(RunResult, WholeSecondsThatMatchTheGroundTruthAreNoOtherUnit) {

@@ -288,7 +288,7 @@ RunOutcome scored(const ResultFile& file, const Trajectory& truth) {
         "has no scale (monocular), import into another store with --fit-scale",
         file.estimate.string(), 1.0 / fit_scale(scaled, truth));
   }
-  RunOutcome outcome;
+  RunOutcome outcome{.detail = eval::sparse_truth_doubt(truth, score)};
   outcome.metrics =
       measured_metrics({.scored = ScoredTrajectory{.gt = truth, .est = estimate, .score = score}});
   if (!file.has_scale) state_fitted_scale(outcome.metrics);
