@@ -287,6 +287,31 @@ TEST_F(StatsCommand, ImperfectionsAreGeometricMeansOverSequences) {
   EXPECT_NEAR(all.at("false_confidence"), 0.03, 1e-15);
 }
 
+// They were pooled, and compared with undisturbed runs at another sweep point.
+TEST_F(StatsCommand, ImperfectionsAtSweepPointsHaveRowsOfTheirOwn) {
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan plan{.name = "rigs", .title = "", .text = "variants = [\"vo\"]\n", .run_keys = {}};
+  const auto add = [&](const std::string& sequence, double value, double ate_m) {
+    const bench::RunIdentity identity{
+        .variant = "vo", .sequence = sequence, .axis = "frontend.max_features", .axis_value = value};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", ate_m}}});
+    plan.run_keys.push_back(bench::run_key(identity));
+  };
+  add("a", 50, 0.01);
+  add("a", 100, 0.05);
+  add("a + jpeg", 50, 0.02);
+  add("a + jpeg", 100, 0.05);
+  writer.record_plan(plan);
+  const std::string table = stats({"imperfections", "--plan", "rigs"}).out;
+  EXPECT_NE(table.find("| jpeg   | vo (frontend.max_features = 50)  | 1    | 0    | 0.02  | 2 "),
+            std::string::npos)
+      << table;
+  EXPECT_NE(table.find("| jpeg   | vo (frontend.max_features = 100) | 1    | 0    | 0.05  | 1 "),
+            std::string::npos)
+      << table;
+}
+
 // The logarithm of 0 made the geometric mean of all runs 0.
 TEST_F(StatsCommand, ImperfectionsHaveNoGeometricMeanOfAnErrorOf0) {
   bench::StoreWriter writer(file_);

@@ -22,6 +22,14 @@ std::string fault_of(const StoredRun& run) {
   return end == std::string::npos ? "" : run.identity.sequence.substr(end + kFaultSeparator.size());
 }
 
+/// With the sweep point: errors at different ones have no common mean.
+std::string variant_of(const StoredRun& run) {
+  const RunIdentity& identity = run.identity;
+  return identity.axis.empty()
+             ? identity.variant
+             : fmt::format("{} ({} = {})", identity.variant, identity.axis, identity.axis_value);
+}
+
 /// The ATE; nullopt if the run is lost.
 std::optional<double> ate_if_located(const StoredRun& run) {
   const double coverage = metric_value(run, metric_id::kCoverage).value_or(1.0);
@@ -29,11 +37,12 @@ std::optional<double> ate_if_located(const StoredRun& run) {
   return metric_value(run, metric_id::kAte);
 }
 
-/// `ate_if_located` of the run with the same sequence, seed, repetition and variant, but without a fault.
+/// `ate_if_located` of the run with the same sequence, seed, repetition, variant and sweep point, but without
+/// a fault.
 std::optional<double> undisturbed_ate(const RunGroup& group, const StoredRun& run) {
   const std::string sequence = run.identity.sequence.substr(0, run.identity.sequence.find(kFaultSeparator));
   const auto found = std::ranges::find_if(group.runs, [&](const StoredRun& other) {
-    return other.identity.sequence == sequence && other.identity.variant == run.identity.variant &&
+    return other.identity.sequence == sequence && variant_of(other) == variant_of(run) &&
            other.identity.seed == run.identity.seed && other.identity.repetition == run.identity.repetition;
   });
   return found == group.runs.end() ? std::nullopt : ate_if_located(*found);
@@ -124,8 +133,8 @@ GroupRows mean_rows(const RunGroup& group) {
   for (const StoredRun& run : group.runs) {
     const std::string fault = fault_of(run);
     if (std::ranges::find(faults, fault) == faults.end()) faults.push_back(fault);
-    means[{fault, run.identity.variant}].add(group, run);
-    if (!fault.empty()) means[{"(all)", run.identity.variant}].add(group, run);
+    means[{fault, variant_of(run)}].add(group, run);
+    if (!fault.empty()) means[{"(all)", variant_of(run)}].add(group, run);
   }
   if (faults.empty() || (faults.size() == 1 && faults.front().empty()))
     return {.group = &group, .rows = {}, .data = {}};
