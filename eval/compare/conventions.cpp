@@ -271,6 +271,20 @@ std::optional<ConventionFinding> inverted_rotations(const Trajectory& gt, const 
           current.rpe_deg_per_s, corrected->rpe_deg_per_s)};
 }
 
+/// Rotation [deg] of an alignment by positions that their errors explain: their RMSE relative to the RMS
+/// distance from their mean.
+double alignment_error_deg(MatchView matches, const Similarity& S_w_v) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const MatchedPose& match : matches) mean += match.gt.p;
+  mean /= static_cast<double>(matches.size());
+  double squared_error = 0.0, squared_distance = 0.0;
+  for (const MatchedPose& match : matches) {
+    squared_error += (match.gt.p - S_w_v * match.est.p).squaredNorm();
+    squared_distance += (match.gt.p - mean).squaredNorm();
+  }
+  return std::atan2(std::sqrt(squared_error), std::sqrt(squared_distance)) * 180.0 / std::numbers::pi;
+}
+
 /// Another body frame results in rotation errors that are large and nearly constant.
 std::optional<ConventionFinding> body_frame(const Trajectory& gt, const Trajectory& est) {
   constexpr double kMaxSpread = 0.2;  // relative to the mean rotation error
@@ -291,7 +305,8 @@ std::optional<ConventionFinding> body_frame(const Trajectory& gt, const Trajecto
   const double spread_deg =
       std::sqrt(squared / static_cast<double>(matches.size())) * 180.0 / std::numbers::pi;
   const double rotation_deg = rotation_angle(mean) * 180.0 / std::numbers::pi;
-  if (rotation_deg < kMinRotation || spread_deg > kMaxSpread * rotation_deg) return std::nullopt;
+  const double min_rotation_deg = std::max(kMinRotation, alignment_error_deg(matches, fit.S_w_v));
+  if (rotation_deg < min_rotation_deg || spread_deg > kMaxSpread * rotation_deg) return std::nullopt;
   if (!missing_orientations(gt, est).empty()) return std::nullopt;
   return ConventionFinding{
       Convention::kBodyFrame,

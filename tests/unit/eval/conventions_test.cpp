@@ -124,6 +124,23 @@ TEST(Conventions, DetectAnotherBodyFrame) {
   EXPECT_EQ(violations(kGt, move_to_frame(kEst, T_b_c, "camera")), std::vector{Convention::kBodyFrame});
 }
 
+TEST(Conventions, ExplainASmallRotationByTheErrorsOfThePositions) {
+  const auto with_errors = [](double error_m) {
+    Trajectory gt, est;
+    for (int i = 0; i < 60; ++i) {
+      const double t = 0.1 * i;
+      const Eigen::Vector3d p{0.2 * std::sin(t), 0.2 * std::cos(2.0 * t), 0.1 * std::sin(3.0 * t)};
+      const Eigen::Vector3d error{0.0, 0.0, i % 2 == 0 ? error_m : -error_m};
+      const Eigen::Quaterniond q = exp_so3({0.02 * std::sin(t), 0.0, 0.0});
+      gt.poses.push_back({from_seconds(t), {q, p}});
+      est.poses.push_back({from_seconds(t), {q, exp_so3({0.0, 0.0, 0.1}) * p + error}});
+    }
+    return violations(gt, est);
+  };
+  EXPECT_EQ(with_errors(0.001), std::vector{Convention::kBodyFrame});
+  EXPECT_TRUE(with_errors(0.05).empty());
+}
+
 TEST(Conventions, DetectAConstantTimeOffset) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) pose.t = after(pose.t, 0.08);
