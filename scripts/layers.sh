@@ -110,11 +110,11 @@ row bench/record $common bench/profile/meters core/pipeline/runners datasets/cac
   bench/profile
 row bench/systems $messages datasets datasets/cache datasets/calibration datasets/faults datasets/synthetic/sequence eval eval/compare eval/io eval/metrics eval/trajectory bench/model bench/config bench/process \
   bench/run bench/profile bench/record
-row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
+row bench/plan core/base datasets datasets/cache datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/statistics eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/profile/meters bench/record bench/systems bench/plan
-row bench/fetch $common core/detector datasets datasets/bags datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
+row bench/fetch $common core/detector datasets datasets/bags datasets/cache datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
 row bench/executors core/base eval/io bench/model bench/config bench/store bench/store/maintenance bench/process bench/record bench/systems \
   bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store

@@ -2,7 +2,6 @@
 #include "bench/fetch/fetch_sequences.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <set>
 
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
 #include "datasets/bags/bag_file.h"
+#include "datasets/cache/user_folder.h"
 #include "datasets/download/transfer_checks.h"
 #include "datasets/open_sequence.h"
 #include "eval/io/trajectory_file.h"
@@ -225,10 +225,10 @@ bool fetch_entry(const CatalogueEntry& entry, const FetchOptions& options, const
 }  // namespace
 
 fs::path download_root() {
-  if (const char* folder = std::getenv("STILLPOINT_DATA")) return folder;
-  if (const char* data = std::getenv("XDG_DATA_HOME")) return fs::path(data) / "stillpoint";
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr ? home : ".") / ".local" / "share" / "stillpoint";
+  if (fs::path folder = datasets::variable_or_empty("STILLPOINT_DATA"); !folder.empty()) return folder;
+  if (fs::path folder = datasets::user_folder("XDG_DATA_HOME", ".local/share"); !folder.empty())
+    return folder;
+  throw InputError("STILLPOINT_DATA", "is not set, and neither is HOME; set it to the folder for downloads");
 }
 
 bool is_available(const CatalogueDataset& dataset, const CatalogueSequence& sequence) {

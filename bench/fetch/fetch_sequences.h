@@ -25,6 +25,7 @@ struct InstalledSequence {
 [[nodiscard]] std::filesystem::path extracted_folder(const InstalledSequence& place);
 
 /// The folder of downloads: $STILLPOINT_DATA, else stillpoint in $XDG_DATA_HOME or ~/.local/share.
+/// @throws InputError if none of the three variables (the last: HOME) is set
 [[nodiscard]] std::filesystem::path download_root();
 
 /// Whether the sequence is registered and its files exist.

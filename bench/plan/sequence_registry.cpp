@@ -2,7 +2,6 @@
 #include "bench/plan/sequence_registry.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "bench/process/file_lock.h"
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
+#include "datasets/cache/user_folder.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
@@ -52,11 +52,9 @@ void require_unused(const std::vector<RegisteredSequence>& sequences, const Regi
 }  // namespace
 
 fs::path registry_file() {
-  if (const char* file = std::getenv("STILLPOINT_REGISTRY")) return file;
-  if (const char* config = std::getenv("XDG_CONFIG_HOME"))
-    return fs::path(config) / "stillpoint" / "sequences.json";
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr ? home : ".") / ".config" / "stillpoint" / "sequences.json";
+  if (fs::path file = datasets::variable_or_empty("STILLPOINT_REGISTRY"); !file.empty()) return file;
+  const fs::path folder = datasets::user_folder("XDG_CONFIG_HOME", ".config");
+  return folder.empty() ? folder : folder / "sequences.json";
 }
 
 std::vector<RegisteredSequence> read_registry(const fs::path& file) {
@@ -80,6 +78,9 @@ std::vector<RegisteredSequence> read_registry(const fs::path& file) {
 
 void register_sequence(const fs::path& file, const RegisteredSequence& sequence, Registration registration) {
   require_valid_name(sequence.name);
+  if (file.empty())
+    throw InputError("STILLPOINT_REGISTRY",
+                     "is not set, and neither is HOME; set it to the file for registered sequences");
   require_utf8("folder", sequence.folder.string());
   std::error_code ignored;  // the lock reports a folder that cannot be written
   fs::create_directories(file.parent_path(), ignored);
@@ -94,7 +95,7 @@ void register_sequence(const fs::path& file, const RegisteredSequence& sequence,
 }
 
 fs::path user_catalogue_folder() {
-  if (const char* folder = std::getenv("STILLPOINT_CATALOGUE")) return folder;
+  if (fs::path folder = datasets::variable_or_empty("STILLPOINT_CATALOGUE"); !folder.empty()) return folder;
   return registry_file().parent_path() / "catalogue";
 }
 

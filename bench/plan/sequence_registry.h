@@ -18,7 +18,8 @@ struct RegisteredSequence {
   std::string format;
 };
 
-/// $STILLPOINT_REGISTRY, else sequences.json in $XDG_CONFIG_HOME/stillpoint or ~/.config/stillpoint.
+/// $STILLPOINT_REGISTRY, else sequences.json in $XDG_CONFIG_HOME/stillpoint or ~/.config/stillpoint; empty if
+/// none of the three variables (the last: HOME) is set.
 [[nodiscard]] std::filesystem::path registry_file();
 
 /// Returns an empty list if the file does not exist.

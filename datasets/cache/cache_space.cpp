@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cstdlib>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "core/base/error.h"
 #include "datasets/cache/cache_key.h"
 #include "datasets/cache/frame_file.h"
+#include "datasets/cache/user_folder.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -24,11 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kKilobyte = 1000;
-
-fs::path variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? fs::path{} : fs::path(value);
-}
 
 std::uint64_t size_or_zero(const fs::path& file) {
   std::error_code error;  // the file may have been removed by another process
@@ -87,9 +82,8 @@ std::uint64_t excess(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 
 }  // namespace
 
 fs::path cache_folder() {
-  if (fs::path own = variable("STILLPOINT_CACHE"); !own.empty()) return own;
-  if (const fs::path users = variable("XDG_CACHE_HOME"); !users.empty()) return users / "stillpoint";
-  if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "stillpoint";
+  if (fs::path own = variable_or_empty("STILLPOINT_CACHE"); !own.empty()) return own;
+  if (fs::path users = user_folder("XDG_CACHE_HOME", ".cache"); !users.empty()) return users;
   throw InputError("STILLPOINT_CACHE",
                    "is not set, and neither is HOME; set it to the folder for rendered sequences");
 }

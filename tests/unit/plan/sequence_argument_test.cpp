@@ -43,6 +43,18 @@ TEST_F(SequenceNames, ARegisteredNameStandsForItsFolder) {
   EXPECT_EQ(resolve_sequence("walking_xyz"), "walking_xyz");
 }
 
+TEST_F(SequenceNames, AreNotRegisteredInTheCurrentFolderWithoutHome) {
+  const char* const value = std::getenv("HOME");
+  const std::string home = value == nullptr ? "" : value;
+  for (const char* name : {"STILLPOINT_REGISTRY", "XDG_CONFIG_HOME", "HOME"}) setenv(name, "", 1);
+  EXPECT_EQ(registry_file(), "");
+  EXPECT_TRUE(read_registry(registry_file()).empty());
+  expect_input_error([&] { add("chair", desk, Registration::kNew); },
+                     {"STILLPOINT_REGISTRY: is not set, and neither is HOME"});
+  unsetenv("XDG_CONFIG_HOME");
+  setenv("HOME", home.c_str(), 1);
+}
+
 TEST_F(SequenceNames, ABagStandsForItself) {
   const std::string bag = folder.write("a.bag", "").string();
   EXPECT_EQ(resolve_sequence(bag), bag);
