@@ -67,7 +67,11 @@ class RenderedStream final : public datasets::SensorStream {
 
   [[nodiscard]] const datasets::SequenceInfo& info() const override { return info_; }
   [[nodiscard]] Frame load_frame(std::size_t index) const override {
-    rendering_.render_until(index);
+    try {
+      rendering_.render_until(index);
+    } catch (const InputError& error) {
+      throw RenderingError(error.what());
+    }
     set_boxes(index);
     return stream_->load_frame(index);
   }

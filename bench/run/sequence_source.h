@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 
 #include "core/base/timestamp.h"
@@ -26,6 +27,13 @@ namespace stillpoint::bench {
     const synth::SynthRequest& request, synth::RenderControl control,
     const std::optional<datasets::FrameCacheOptions>& frame_cache);
 
+/// A frame that is rendered when it is loaded could not be, as on a full disk. An `InputError` would be taken
+/// for a damaged frame, which a run skips.
+class RenderingError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Which frames of a preset are rendered, and when.
 struct PresetPart {
   /// Number of frames, from the first one on, that will be loaded; empty: all.
@@ -42,7 +50,8 @@ struct PresetPart {
 /// @param control of the rendering before the stream is returned, if that is necessary
 /// @param part    of a preset
 /// @return null if the rendering was stopped
-/// @throws InputError if the name is neither, and errors of opening and rendering
+/// @throws InputError if the name is neither, and errors of opening and rendering; `load_frame` of the stream
+/// throws RenderingError if it renders
 [[nodiscard]] std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
                                                                     const datasets::OpenOptions& options,
                                                                     const synth::RenderControl& control,

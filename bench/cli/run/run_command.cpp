@@ -355,6 +355,15 @@ int save_map_and_dumps(const RunArguments& arguments, const RunResult& result, R
   return failures.empty() ? kExitOk : kExitFindings;
 }
 
+/// `run_odometry`; a frame that could not be rendered is an error of the command.
+OdometryRun executed_run(const datasets::SensorStream& stream, const RunSpec& spec, RunControl control) {
+  try {
+    return run_odometry(stream, spec, std::move(control));
+  } catch (const RenderingError& error) {
+    throw InputError(error.what());
+  }
+}
+
 /// Executes each configured run, and writes its files, then its dumps. @return exit code
 int run_configs(const std::shared_ptr<const RunArguments>& shared) {
   const RunArguments& arguments = *shared;
@@ -372,7 +381,7 @@ int run_configs(const std::shared_ptr<const RunArguments>& shared) {
     RunDumps dumps(dump_request(arguments, configured), *stream, configured.spec.config.frontend);
     std::optional<RunWatch> watch(std::in_place, info, arguments, configured);
     const double start_s = process_age_s();
-    OdometryRun executed = run_odometry(*stream, configured.spec, control_of(*watch, dumps));
+    OdometryRun executed = executed_run(*stream, configured.spec, control_of(*watch, dumps));
     executed.device = watch->finish();
     RunResult result = result_of(std::move(executed), info, configured);
     result.start_s = start_s;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
@@ -72,6 +73,15 @@ TEST_F(RenderedSequence, ARenderingThatIsContinuedIsDecodedByItsFirstRun) {
 TEST_F(RenderedSequence, AStoppedRenderingLeavesNoFrameCache) {
   EXPECT_TRUE(rendered_sequence(small_request(), {.stop_requested = [] { return true; }}, options()).empty());
   EXPECT_EQ(datasets::cache_bytes(options().folder), 0U);
+}
+
+// The run skipped all frames, and the odometry was scored as lost.
+TEST_F(RenderedSequence, AFrameThatCannotBeWrittenIsNoDamagedFrame) {
+  const auto stream = find_sequence("walking_xyz_empty", {}, {}, {.when_loaded = true});
+  const fs::path folder = synth::sequence_cache_folder(synth::preset_request("walking_xyz_empty"));
+  fs::remove_all(folder / "color");
+  std::ofstream(folder / "color") << "no folder";
+  EXPECT_THROW(static_cast<void>(stream->load_frame(0)), RenderingError);
 }
 
 }  // namespace
