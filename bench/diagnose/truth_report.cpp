@@ -10,6 +10,7 @@
 
 #include "core/geometry/decompositions.h"
 #include "core/geometry/so3.h"
+#include "eval/metrics/rpe.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -312,10 +313,15 @@ std::vector<Cause> quality_causes(const TruthReport& report) {
                     "leave out the ground truth from the jump on"));
     causes.back().times = report.jumps;
   }
-  if (report.coverage < kLeastCoverage)
+  if (report.interval_s > eval::kStrictMaxGap) {
+    causes.push_back(truth_cause("truth_sparse", "ground truth sparse",
+                                 fmt::format("it has one pose per {:.3g} s", report.interval_s),
+                                 "export the ground truth at 10 Hz or more"));
+  } else if (report.coverage < kLeastCoverage) {
     causes.push_back(truth_cause("truth_part", "ground truth of a part",
                                  fmt::format("it covers {:.0f} % of the frames", 100.0 * report.coverage),
                                  "--start and --length select a part with ground truth"));
+  }
   for (Cause& cause : causes) cause.basis = CauseBasis::kShown;
   return causes;
 }
@@ -367,6 +373,7 @@ TruthReport truth_report(const datasets::SequenceInfo& info, const RecordingSurv
   TruthReport report;
   const Trajectory truth = part_of_truth(info);
   report.poses = truth.poses.size();
+  report.interval_s = eval::median_pose_interval_s(truth);
   if (report.poses < 10) return report;
   double covered = 0.0;
   for (const Timestamp t : info.frame_times) covered += pose_at(truth, t) ? 1.0 : 0.0;

@@ -38,6 +38,7 @@ struct BearingFit {
 
 struct TruthReport {
   std::size_t poses = 0;
+  double interval_s = 0.0;                    ///< median time between consecutive poses
   double coverage = 0.0;                      ///< fraction of the frames between poses at most 0.1 s apart
   std::optional<datasets::LagFit> by_images;  ///< stamp of the truth minus that of the image
   std::optional<datasets::LagFit> by_gyro;    ///< stamp of the truth minus that of the gyroscope

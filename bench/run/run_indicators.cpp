@@ -40,7 +40,7 @@ std::vector<std::string> run_indicators(const RunResult& result) {
     if (finding.result == RigResult::kDiffers) off.push_back(finding.parameter + " differs");
   }
   if (const double lost = fraction_lost(result.run); lost > kMostLost)
-    off.push_back(fmt::format("{:.0f} % of the frames have no pose", 100.0 * lost));
+    off.push_back(fmt::format("{:.0f} % of the frames after the first second have no pose", 100.0 * lost));
   return off;
 }
 

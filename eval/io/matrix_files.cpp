@@ -148,7 +148,9 @@ LoadedTrajectory read_seven_scenes(const fs::path& folder) {
     if (const auto number = seven_scenes_number(name, ".pose.txt")) files[*number] = entry.path();
   }
   if (error || files.empty()) {
-    throw InputError(folder.string(), "no frame-N.pose.txt found; expected a 7-Scenes sequence folder");
+    throw InputError(folder.string(),
+                     "contains no trajectory: neither trajectory.tum, as the folder of a run, nor "
+                     "frame-N.pose.txt, as a 7-Scenes sequence; name a file, such as groundtruth.txt");
   }
   if (const auto& [number, file] = *files.rbegin(); number > kMaxFrameNumber)
     throw InputError(file.string(),

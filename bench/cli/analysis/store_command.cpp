@@ -200,8 +200,8 @@ int list(const StoreArguments& arguments) {
     const RunIdentity& identity = run.identity;
     const std::optional<double> headline = metric_value(run, headline_metric().id);
     std::cout << fmt::format(
-        "{}  {}  {:<20} {:<24} seed {} repetition {}{}  {:<9} {}\n", run.key, identity.build.substr(0, 10),
-        identity.sequence, identity.variant, identity.seed, identity.repetition,
+        "{}  {:<10}  {:<20} {:<24} seed {} repetition {}{}  {:<9} {}\n", run.key,
+        identity.build.substr(0, 10), identity.sequence, identity.variant, identity.seed, identity.repetition,
         identity.axis.empty() ? "" : fmt::format(" {} = {}", identity.axis, identity.axis_value),
         outcome_name(run.outcome), headline ? value_text(headline_metric(), *headline) : run.detail);
   }

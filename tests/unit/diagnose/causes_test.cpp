@@ -505,6 +505,22 @@ TEST(TruthCauses, TellNoCenterByABearingWithinTheErrorsOfImagesOrTruth) {
   EXPECT_FALSE(cause_named(StraightDrive({0.01, 0.01}, 0.001).causes(), "center"));  // 0.8 degrees
 }
 
+/// It was called one of a part, and its start was searched for.
+TEST(TruthCauses, TellThatTheGroundTruthIsSparse) {
+  MovingCamera camera(Pose{});
+  std::vector<StampedPose>& poses = camera.rig.info.ground_truth.trajectory.poses;
+  const Timestamp first = poses.front().t;
+  std::int64_t second = -1;
+  std::erase_if(poses, [&](const StampedPose& pose) {
+    const std::int64_t whole = (pose.t.ns - first.ns) / 1'000'000'000;
+    return whole == std::exchange(second, whole);
+  });
+  const std::vector<Cause> causes = camera.causes();
+  ASSERT_TRUE(cause_named(causes, "truth_sparse"));
+  EXPECT_EQ(cause_named(causes, "truth_sparse")->evidence, "it has one pose per 1 s");
+  EXPECT_FALSE(cause_named(causes, "truth_part"));
+}
+
 TEST(TruthReport, NamesWhatTheMotionDoesNotDetermine) {
   const auto undetermined = [](const MovingCamera& camera) {
     return undetermined_of_truth(truth_report(camera.rig.info, camera.rig.survey, camera.visual));

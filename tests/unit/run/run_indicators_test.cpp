@@ -30,7 +30,7 @@ TEST(RunIndicators, CountLostFramesAfterTheFirstSecond) {
   EXPECT_TRUE(run_indicators(result).empty());
   for (std::size_t i = 40; i < 55; ++i) result.run.claims[i].claim = eval::PoseClaim::kLost;
   ASSERT_EQ(run_indicators(result).size(), 1U);
-  EXPECT_EQ(run_indicators(result)[0], "25 % of the frames have no pose");
+  EXPECT_EQ(run_indicators(result)[0], "25 % of the frames after the first second have no pose");
 }
 
 }  // namespace
