@@ -19,6 +19,7 @@ struct InertialAlignment {
   Eigen::Vector3d first_velocity_w = Eigen::Vector3d::Zero();  ///< of frame 0 [m/s]
   double scale = 1.0;                                          ///< meters per unit of the visual world
   double unconstrained_gravity = 0.0;  ///< norm of gravity without the norm constraint [m/s^2]
+  double position_sigma = 0.0;         ///< of the equations that the alignment solves, by their residuals [m]
 };
 
 /// Aligns the visual poses of a window with its preintegrated IMU data. The poses are metric except with the
@@ -58,7 +59,10 @@ void apply_alignment(const InertialAlignment& alignment, const Pose& anchor, Win
 /// If gravity is known already (`Window::gravity_covariance`, after a restart), the world is kept: frame 0
 /// has the pose `anchor`, and gravity keeps its value and covariance unless the alignment contradicts it
 /// (squared Mahalanobis distance above the 0.999 quantile): then the attitude was lost, and gravity is that
-/// of the alignment.
-void apply_alignment_to_frozen_world(const InertialAlignment& alignment, const Pose& anchor, Window& window);
+/// of the alignment. If the positions deviate from it by more than 5 mm, they are not those of the camera
+/// alone, e.g. because the first ones follow a person who then left, and the next window is to be aligned.
+/// @return whether the alignment is applied; else the window is not to be used
+[[nodiscard]] bool apply_alignment_to_frozen_world(const InertialAlignment& alignment, const Pose& anchor,
+                                                   Window& window);
 
 }  // namespace stillpoint

@@ -78,7 +78,7 @@ bool WindowStart::initialize(Window& window, WindowSolver& solver) const {
   if (!alignment) return false;
   const Pose anchor = window.frames.front().state.T_w_b;
   if (backend_.gravity == GravityModel::kEstimated) {
-    apply_alignment_to_frozen_world(*alignment, anchor, *visual);
+    if (!apply_alignment_to_frozen_world(*alignment, anchor, *visual)) return false;
   } else {
     apply_alignment(*alignment, anchor, *visual);
   }

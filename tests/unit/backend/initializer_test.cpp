@@ -60,7 +60,7 @@ double tilt(const Window& window, const Eigen::Vector3d& down) {
 TEST(Initializer, LevelsAWorldWhoseGravityIsUnknownWithAWeakCovariance) {
   Window window = exact_window(Pose{exp_so3({0.7, -0.3, 0.4}), {1.0, 2.0, 3.0}}, 11, 1.0 / 30.0);
   const NavState truth = SimulatedMotion::state(0.5);
-  apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window);
+  ASSERT_TRUE(apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window));
   EXPECT_LT(tilt(window, {0.0, 0.0, -1.0}), 1e-9);
   const NavState& last = window.frames.back().state;
   const NavState truth_last = SimulatedMotion::state(0.5 + 10.0 / 30.0);
@@ -77,7 +77,7 @@ TEST(Initializer, KeepsAKnownGravityAndTheWorld) {
   window.gravity_w = exp_so3({0.01, 0.0, 0.0}) * Eigen::Vector3d(0.0, 0.0, -9.81);
   window.gravity_covariance = 1e-6 * Eigen::Matrix2d::Identity();
   const Eigen::Vector3d known = window.gravity_w;
-  apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window);
+  ASSERT_TRUE(apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window));
   EXPECT_EQ(window.gravity_w, known);
   EXPECT_EQ((*window.gravity_covariance)(0, 0), 1e-6);
   EXPECT_LT(log_so3(truth.T_w_b.q.conjugate() * window.frames[0].state.T_w_b.q).norm(), 1e-9);
@@ -88,10 +88,26 @@ TEST(Initializer, ReplacesAKnownGravityThatTheSamplesContradictButKeepsTheWorld)
   Window window = exact_window(Pose{}, 11, 1.0 / 30.0);
   window.gravity_w = exp_so3({0.3, 0.0, 0.0}) * Eigen::Vector3d(0.0, 0.0, -9.81);
   window.gravity_covariance = 1e-6 * Eigen::Matrix2d::Identity();
-  apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window);
+  ASSERT_TRUE(apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window));
   EXPECT_LT(tilt(window, {0.0, 0.0, -1.0}), 0.002);
   EXPECT_GT((*window.gravity_covariance)(0, 0), 1e-3);
   EXPECT_LT(log_so3(truth.T_w_b.q.conjugate() * window.frames[0].state.T_w_b.q).norm(), 1e-9);
+}
+
+TEST(Initializer, KeepsAKnownGravityThatPositionsOfAnotherMotionContradict) {
+  Window window = exact_window(Pose{}, 11, 1.0 / 30.0);
+  // The first frames follow a person who walks with the camera at 0.95 m/s, the others the scene.
+  for (int i = 3; i < 11; ++i) {
+    window.frames[static_cast<std::size_t>(i)].state.T_w_b.p.x() += 0.95 / 30.0 * (i - 2);
+  }
+  window.gravity_w = Eigen::Vector3d(0.0, 0.0, -9.81);
+  window.gravity_covariance = 1e-4 * Eigen::Matrix2d::Identity();
+  const std::optional<InertialAlignment> alignment = align_with_imu(window, 9.81, {});
+  ASSERT_TRUE(alignment);
+  EXPECT_GT(tilt(window, alignment->gravity_w), 0.2);
+  EXPECT_GT(alignment->position_sigma, 0.005);
+  const Pose first = window.frames[0].state.T_w_b;
+  EXPECT_FALSE(apply_alignment_to_frozen_world(*alignment, first, window));
 }
 
 TEST(Initializer, RejectsAWindowWithMissingSamples) {
