@@ -282,7 +282,7 @@ void Estimator::optimize() {
 
 /// The biases were part of a divergence, and are forgotten with it.
 bool Estimator::accept_or_reset(const Eigen::Vector3d& gravity_before) {
-  const StatusReason failure = SensorMonitor::failure_of(window(), newest_, window_.unusable_solves());
+  const StatusReason failure = monitor_.failure_of(window(), newest_, window_.unusable_solves());
   if (failure != StatusReason::kNone) {
     update_.counters.reset = true;
     restart(gravity_before);

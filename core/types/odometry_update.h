@@ -65,7 +65,7 @@ enum class StatusReason {
   kImuSaturated,     ///< samples are at the limit of the sensor
   kImuInconsistent,  ///< samples contradict vision
   kUncertain,        ///< dead reckoning for too long
-  kDiverged,         ///< implausible state
+  kDiverged,         ///< implausible state, or the static world appears to move
   kSolveFailed,      ///< the solver failed repeatedly
   kMapMatched,       ///< located by the map of trusted landmarks
   kRepeatedImage,    ///< no new image: constant velocity, without an IMU

@@ -54,7 +54,8 @@ SensorMonitor::SensorMonitor(const BackendConfig& backend, const ImuConfig& imu,
       noise_(rig.imu_noise),
       step_(rig.camera.focal_px()),
       biases_(rig.camera.focal_px()),
-      depth_(backend.depth.max_scale_error, rig.camera.focal_px()) {}
+      depth_(backend.depth.max_scale_error, rig.camera.focal_px()),
+      moving_world_(rig.camera.focal_px()) {}
 
 void SensorMonitor::begin_frame(const TrackedFrame& frame, bool bridged) {
   evidence_ = {.t = frame.t, .features = static_cast<int>(frame.features.size()), .bridged = bridged};
@@ -174,7 +175,8 @@ void SensorMonitor::distrust_recent_samples(Window& window) {
 }
 
 StatusReason SensorMonitor::failure_of(const Window& window, const NavState& before, int unusable_solves) {
-  if (has_failed(before, window.frames.back().state) || !is_finite(window.prior)) {
+  if (has_failed(before, window.frames.back().state) || !is_finite(window.prior) ||
+      (window.inertial && moving_world_.update(window))) {
     return StatusReason::kDiverged;
   }
   return unusable_solves >= kMonitor.failure.max_unusable_solves ? StatusReason::kSolveFailed
@@ -214,6 +216,7 @@ void SensorMonitor::window_restarted() {
   step_.reset();
   biases_.reset();
   bias_step_.reset();
+  moving_world_.reset();
 }
 
 }  // namespace stillpoint

@@ -11,6 +11,7 @@
 #include "core/backend/health/inertial_checks.h"
 #include "core/backend/health/inertial_interval.h"
 #include "core/backend/health/inertial_noise.h"
+#include "core/backend/health/moving_world.h"
 #include "core/backend/health/tracking_monitor.h"
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
@@ -101,9 +102,9 @@ class SensorMonitor {
   /// @return whether the window must be cleared
   [[nodiscard]] bool update_status(const Outcome& outcome, const Window& window);
 
-  /// Why the estimate must be given up, if so: an implausible state, or solves that failed in succession.
-  [[nodiscard]] static StatusReason failure_of(const Window& window, const NavState& before,
-                                               int unusable_solves);
+  /// Why the estimate must be given up, if so: an implausible state, a world that moves (MovingWorld), or
+  /// solves that failed in succession.
+  [[nodiscard]] StatusReason failure_of(const Window& window, const NavState& before, int unusable_solves);
 
   /// After a change of the world frame, a restart of the window, and a restart with another calibration.
   void world_changed() { inertial_.reset(); }
@@ -140,6 +141,7 @@ class SensorMonitor {
   BiasMonitor biases_;
   std::optional<MeasuredBiases> bias_step_;  ///< newest one, until inertial data is used again
   DepthMonitor depth_;
+  MovingWorld moving_world_;
   FrameEvidence evidence_;   ///< of the last frame that was added
   Innovations innovations_;  ///< same
   // Members only to reuse the memory.

@@ -132,17 +132,17 @@ TEST_F(SensorMonitorTest, ReplacesTheNoiseOfMissingSamples) {
 TEST_F(SensorMonitorTest, GivesUpAnImplausibleStateOrAfterThreeFailedSolves) {
   Window window = visual_window(3, 10);
   const NavState before = window.frames.back().state;
-  EXPECT_EQ(SensorMonitor::failure_of(window, before, 2), StatusReason::kNone);
-  EXPECT_EQ(SensorMonitor::failure_of(window, before, 3), StatusReason::kSolveFailed);
+  EXPECT_EQ(monitor.failure_of(window, before, 2), StatusReason::kNone);
+  EXPECT_EQ(monitor.failure_of(window, before, 3), StatusReason::kSolveFailed);
   window.frames.back().state.gyro_bias.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(SensorMonitor::failure_of(window, before, 0), StatusReason::kDiverged);
+  EXPECT_EQ(monitor.failure_of(window, before, 0), StatusReason::kDiverged);
   window.frames.back().state.gyro_bias.x() = 0.0;
   window.frames.back().state.T_w_b.p.x() += 5.1;
-  EXPECT_EQ(SensorMonitor::failure_of(window, before, 0), StatusReason::kDiverged);
+  EXPECT_EQ(monitor.failure_of(window, before, 0), StatusReason::kDiverged);
   window.frames.back().state.T_w_b.p.x() -= 5.1;
   window.prior = initial_prior(window, short_window());
   window.prior.residual(0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(SensorMonitor::failure_of(window, before, 0), StatusReason::kDiverged);
+  EXPECT_EQ(monitor.failure_of(window, before, 0), StatusReason::kDiverged);
 }
 
 TEST_F(SensorMonitorTest, TracksOnceTheWindowIsInertialAndVisionLocatesIt) {
