@@ -138,9 +138,10 @@ void visit_consistency_fields(Visitor&& field, Config& config) {
                   "prediction; 0, or without a covariance: a residual of at most 10 px; not in the paper.",
                   "", 0.0, 0.999999});
   field("min_stable_features", config.min_stable_features,
-        FieldInfo{"Features that are left at least; not in the paper. At a predicted pose only without its "
-                  "covariance.",
-                  "features", 0, 1000});
+        FieldInfo{
+            "Features that are left at least, unless inertial data predicts the pose with its covariance; "
+            "not in the paper.",
+            "features", 0, 1000});
 }
 
 template <class Visitor, class Config>

@@ -104,6 +104,7 @@ const std::vector<DynamicLabel>& FeatureRecognition::classify(const TrackedFrame
     next_features_.push_back(feature);
   }
   std::swap(features_, next_features_);
+  is_predicted_ = false;
   collect_labels();
   return labels_;
 }
@@ -114,9 +115,9 @@ const std::vector<DynamicLabel>& FeatureRecognition::gate(std::span<const Consis
     if (fails_gate(residual, config_)) label_as_moving(feature.label, LabelReason::kPredictionResidual);
   });
   collect_labels();
-  const bool has_covariance = std::ranges::any_of(
+  is_predicted_ = std::ranges::any_of(
       residuals, [](const ConsistencyResidual& residual) { return residual.squared_distance.has_value(); });
-  if (!has_covariance) labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
+  if (!is_predicted_) labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
   return labels_;
 }
 
@@ -142,7 +143,7 @@ const std::vector<DynamicLabel>& FeatureRecognition::check(std::span<const Consi
     if (std::ranges::binary_search(readmitted, feature.label.id)) recycle(feature, LabelReason::kStatic);
   }
   collect_labels();
-  labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
+  if (!is_predicted_) labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
   return labels_;
 }
 

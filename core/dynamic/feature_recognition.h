@@ -38,8 +38,9 @@ class FeatureRecognition {
 
   /// Labels features with a residual above 10 px, or outside the gate of `gate_probability`, as
   /// dynamic. Recycles none: the residuals are computed at the predicted pose. With squared distances, that
-  /// is, a covariance of the prediction, no minimum of features is kept: behind a person who comes in front
-  /// of the camera those that fit best are on the person, and inertial data locates the frame without them.
+  /// is, a covariance of the prediction, no minimum of features is kept, neither here nor by `check` of the
+  /// frame: behind a person who comes in front of the camera those that fit best are on the person, and
+  /// inertial data locates the frame without them.
   [[nodiscard]] const std::vector<DynamicLabel>& gate(std::span<const ConsistencyResidual> residuals);
 
   /// Labels features with a residual r_k above `mcc_threshold_px` as dynamic. Recycles dynamic features
@@ -72,6 +73,7 @@ class FeatureRecognition {
   std::vector<Feature> features_;       ///< by ascending id
   std::vector<Feature> next_features_;  ///< scratch of `classify`
   std::vector<DynamicLabel> labels_;    ///< last result
+  bool is_predicted_ = false;           ///< the frame, with a covariance, by inertial data
 };
 
 /// Guarantees a minimum number of features for the estimate: if fewer than `min_stable` labels are stable,

@@ -277,6 +277,9 @@ TEST(FeatureRecognition, KeepsNoMinimumOfFeaturesAtAPredictionWithCovariance) {
   residual.squared_distance = 100.0;
   expect_label(recognition.gate(std::span(&residual, 1)).at(0), LabelClass::kDynamicMotion,
                LabelReason::kPredictionResidual);
+  expect_label(check_one(recognition, 20.0, 4), LabelClass::kDynamicMotion, LabelReason::kPredictionResidual);
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
+  expect_label(check_one(recognition, 20.0, 4), LabelClass::kStable, LabelReason::kMinimumKept);
 }
 
 TEST(FeatureRecognition, RecyclesAfterEnoughFramesWithASmallResidual) {
