@@ -7,8 +7,7 @@
 ///   plan.toml        the plan
 ///   systems          names of the other systems, one per line, in the order of the plan; optional
 ///   files            configs and sequences that the plan names by paths: the path, and on the next line
-///   where it
-///                    is, relative to the job folder; optional
+///                    its place relative to the job folder; optional
 ///   config-I/        copy of a config with the files that it inherits; optional
 ///   system-I/        copy of the description of system I = 0, 1, ..., with its template and the files of its
 ///                    command; optional
