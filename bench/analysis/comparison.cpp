@@ -136,12 +136,16 @@ std::vector<std::string> notes_on_copies(const PairedRuns& runs) {
 
 /// What to do about too few runs: perturbations of one input are replicates, seeds are pairs.
 std::string advice_of(const MetricChange& change, CompareSource source) {
-  if (source == CompareSource::kPrograms) return fmt::format("run with --pairs {}", change.needed);
+  if (source == CompareSource::kPrograms)
+    return fmt::format("run with --pairs {}", std::max(change.needed, change.repetitions));
   const std::string perturbations =
       change.test == ChangeTest::kReplicates ? fmt::format("{} perturbations or ", change.needed) : "";
-  return fmt::format(
-      "store {}{} seeds of each sequence, or repeat each run: bit-equal repetitions make a change exact",
-      perturbations, change.needed_seeds);
+  const std::string repetitions =
+      change.repetitions > 0
+          ? fmt::format(", or execute each run {} times: bit-equal repetitions make a change exact",
+                        change.repetitions)
+          : "";
+  return fmt::format("store {}{} seeds of each sequence{}", perturbations, change.needed_seeds, repetitions);
 }
 
 /// One sentence for each number of pairs that is too small for the inconclusive changes.

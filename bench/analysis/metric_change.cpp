@@ -67,9 +67,10 @@ struct PairedSubject {
   DistinctRuns head;
   bool any_failed = false;
 
-  /// Whether the difference has no noise: at least two repetitions of each side, without perturbation, and
-  /// all runs of a side have one trajectory to the bit.
-  [[nodiscard]] bool is_deterministic() const {
+  /// Whether the difference has no noise: enough repetitions of each side, without perturbation, and all runs
+  /// of a side have one trajectory to the bit.
+  /// @param needed see `exact_repetitions`
+  [[nodiscard]] bool is_deterministic(std::size_t needed) const {
     if (pairs.size() != 1 || any_failed) return false;
     const RunPair& first = pairs.front();
     std::size_t repetitions = 0;
@@ -82,7 +83,7 @@ struct PairedSubject {
       const bool repeats = identity.seed == first.base->identity.seed && !is_perturbed(identity.config_hash);
       repetitions += repeats ? 1 : 0;
     }
-    return repetitions >= 2;
+    return repetitions >= needed;
   }
 
   /// Runs with equal results are copies, whatever their seeds: a seed that a recorded sequence does not use,
@@ -221,6 +222,13 @@ std::vector<double> sorted(std::vector<double> values) {
 
 }  // namespace
 
+std::size_t exact_repetitions(const RunIdentity& run, std::size_t subjects) {
+  std::size_t count = 2;
+  double by_chance = 2.0 / 16.0 * static_cast<double>(subjects);
+  for (; !repeats_by_design(run) && by_chance > kSignificance; by_chance /= 4.0) ++count;
+  return count;
+}
+
 std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
   std::map<std::string, PairedSubject> subjects;
   for (const RunPair& pair : runs.pairs) {
@@ -236,9 +244,10 @@ std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
     for (const Metric& metric : accuracy_metrics(members)) {
       MetricSeries series = series_of(metric, members);
       if (series.pairs.empty()) continue;
+      series.repetitions = exact_repetitions(members.pairs.front().base->identity, subjects.size());
       // The rank test of two samples counts ties against a difference: of little power for rates that are
       // mostly 0.
-      if (members.is_deterministic()) {
+      if (members.is_deterministic(series.repetitions)) {
         series.test = ChangeTest::kExact;
       } else if (series.inputs == 1 && !has_zero_base(series)) {
         series.test = ChangeTest::kReplicates;
@@ -524,6 +533,7 @@ std::optional<MetricChange> change_of(const MetricSeries& series, const TestFami
     if (change.smallest_p > change.level && needed * series.inputs > tested->count) {
       change.needed = needed;
       change.needed_seeds = seeds_for(series, level);
+      change.repetitions = series.repetitions;
     }
   }
   change.result = classify(change, *series.descriptor);

@@ -54,6 +54,7 @@ struct MetricSeries {
   ChangeTest test = ChangeTest::kPairs;
   std::size_t inputs = 1;         ///< number of different data and seeds
   std::size_t sequences = 1;      ///< each counted once per variant
+  std::size_t repetitions = 0;    ///< that would make it exact if they were bit-equal; 0: none would
   std::vector<eval::Pair> pairs;  ///< one per pair of runs
   std::vector<double> base;       ///< `kReplicates`: one value per replicate
   std::vector<double> head;
@@ -62,8 +63,16 @@ struct MetricSeries {
 
 /// Accuracy per variant and sequence, from runs that succeeded. Runs with equal fingerprints count once, also
 /// with different seeds. With one input, replicates of only one side are used as well; bit-equal repetitions
-/// of both sides make the change exact.
+/// of both sides (`exact_repetitions`) make the change exact.
 [[nodiscard]] std::vector<MetricSeries> accuracy_series(const PairedRuns& runs);
+
+/// Number of bit-equal repetitions of each side from which on a difference is exact. Where they are so by
+/// design (`repeats_by_design`), 2 confirm it. Another program may end in one of two results, equally often;
+/// r runs of each side are then equal, but differ between the sides, with a probability of 2 / 4^r, more than
+/// with any other frequencies. For one of several subjects this happens with at most `kSignificance`.
+/// @param run      one of those that are compared
+/// @param subjects number of variants and sequences that are compared
+[[nodiscard]] std::size_t exact_repetitions(const RunIdentity& run, std::size_t subjects);
 
 /// Times and memory per variant, over all its sequences; instructions per variant and sequence. Those of runs
 /// that were not made to measure them do not decide, nor do times that are unlike
@@ -146,6 +155,7 @@ struct MetricChange {
   double smallest_p = 1.0;       ///< that the number of pairs can reach
   std::size_t needed = 0;        ///< pairs per input that a class requires; 0 if there are enough
   std::size_t needed_seeds = 0;  ///< seeds of each sequence instead; 0 if there are enough
+  std::size_t repetitions = 0;   ///< as in `MetricSeries`
   bool decides = true;  ///< false: reported only, or too few pairs: another change pools all sequences
   ChangeClass result = ChangeClass::kSame;
 };

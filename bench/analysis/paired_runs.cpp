@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/analysis/run_groups.h"
 #include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
 
@@ -66,6 +67,10 @@ bool is_bit_equal(const RunPair& pair) {
   const auto base = pair.base->blobs.find("trajectory");
   const auto head = pair.head->blobs.find("trajectory");
   return base != pair.base->blobs.end() && head != pair.head->blobs.end() && base->second == head->second;
+}
+
+bool repeats_by_design(const RunIdentity& identity) {
+  return identity.system == kOwnSystem && !identity.mode.ends_with("realtime");
 }
 
 std::string input_key(const RunIdentity& identity) {

@@ -33,6 +33,9 @@ struct PairedRuns {
 /// Whether both runs have the same trajectory, to the bit.
 [[nodiscard]] bool is_bit_equal(const RunPair& pair);
 
+/// Whether repetitions of a run have the same bits by design: of this odometry, but for real time.
+[[nodiscard]] bool repeats_by_design(const RunIdentity& identity);
+
 /// Equal for replicates: runs of one variant on the same data with the same seed, of any build and config,
 /// and with any repetition and perturbation.
 [[nodiscard]] std::string input_key(const RunIdentity& identity);

@@ -30,8 +30,10 @@ constexpr ResultWord kWords[] = {
      "change for the worse of at least margin and floor, p <= level or exact; or runs fail more often at "
      "head"},
     {kCompare, "exact",
-     "in place of p: counted instructions, or all repetitions of each side (two or more) are bit-equal; the "
-     "difference is a fact about this sequence, without a test"},
+     "in place of p: counted instructions, or all repetitions of each side are bit-equal (two or more, of "
+     "other systems three, of several sequences more); the difference is a fact about this sequence, without "
+     "a "
+     "test"},
     {kCompare, "error", "all runs failed on both sides"},
     {kCompare, "reported only",
      "does not decide: a cost of runs that were not made to measure it, a time that is unlike, or too few "

@@ -13,8 +13,12 @@
 namespace stillpoint::bench {
 namespace {
 
-bool is_changed(const MetricChange& change) {
-  return change.decides && (change.result == ChangeClass::kWorse || change.result == ChangeClass::kBetter);
+/// @param looks see `followed_change`
+bool is_changed(const MetricChange& change, std::size_t looks) {
+  const bool is_certain =
+      change.test == ChangeTest::kExact || static_cast<double>(looks) * change.change.p_value <= change.level;
+  return is_certain && change.decides &&
+         (change.result == ChangeClass::kWorse || change.result == ChangeClass::kBetter);
 }
 
 VersionSide side_of_failures(const Comparison& comparison, double rate) {
@@ -34,7 +38,8 @@ std::vector<StoredRun> with_metric_only(std::vector<StoredRun> runs, const std::
   return runs;
 }
 
-std::optional<FollowedChange> followed_change(const Comparison& comparison, const std::string& metric) {
+std::optional<FollowedChange> followed_change(const Comparison& comparison, const std::string& metric,
+                                              std::size_t looks) {
   if (metric == metric_id::kFailedRuns) {
     if (comparison.failures != ChangeClass::kWorse) return std::nullopt;
     return FollowedChange{
@@ -44,7 +49,7 @@ std::optional<FollowedChange> followed_change(const Comparison& comparison, cons
   }
   std::optional<FollowedChange> largest;
   for (const MetricChange& change : comparison.changes) {
-    if (change.metric != metric || !is_changed(change)) continue;
+    if (change.metric != metric || !is_changed(change, looks)) continue;
     if (!largest || std::abs(change.change.median) > std::abs(largest->change.change.median))
       largest = FollowedChange{.change = change};
   }

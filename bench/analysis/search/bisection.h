@@ -41,9 +41,12 @@ struct FollowedChange {
 };
 
 /// The change to follow, of a comparison of runs with one metric only.
+/// @param looks comparisons of the same versions, with more and more pairs, of which the first significant
+/// one
+///              is taken: a p-value is then significant at a fraction of the level (Bonferroni)
 /// @return nullopt if the metric did not change significantly
 [[nodiscard]] std::optional<FollowedChange> followed_change(const Comparison& comparison,
-                                                            const std::string& metric);
+                                                            const std::string& metric, std::size_t looks = 1);
 
 /// @param comparison of the first version with another one, of runs with the metric only
 /// @param whole      from the first to the last version

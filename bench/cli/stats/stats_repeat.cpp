@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint stats repeat`.
+#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
+#include "bench/analysis/paired_runs.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/stats/stats_actions.h"
 #include "core/base/error.h"
@@ -20,6 +22,25 @@ report::DataRow joined_values(report::DataRow values, const report::DataRow& mor
   return values;
 }
 
+/// Whether all repetitions are equal, and the number of those that confirm a run and need not by design.
+struct RepetitionSummary {
+  bool all_equal = true;
+  std::size_t confirming = 0;
+};
+
+/// Where repetitions need not be equal by design, n of them without a difference exclude, with a confidence
+/// of 95 %, that more than 1 - 0.05^(1/n) of the runs differ.
+std::string repetition_note(const RepetitionSummary& summary) {
+  if (!summary.all_equal)
+    return "Some repetitions differ or failed: evaluate failures and the spread over repetitions.";
+  if (summary.confirming == 0) return "All repetitions are bit-equal: a single run is sufficient.";
+  const double most = 1.0 - std::pow(0.05, 1.0 / static_cast<double>(summary.confirming));
+  return fmt::format(
+      "All repetitions are bit-equal. Of other systems and in real time, {} a first run: up to {:.0f} % of "
+      "their runs may still differ (95 % confidence).",
+      summary.confirming == 1 ? "one repeats" : fmt::format("{} repeat", summary.confirming), 100.0 * most);
+}
+
 int compare_repetitions(const Store& store, const RunSelection& selection, const StatsArguments& arguments) {
   StatsTable output{.header = {"run", "repetitions", "failed", "trajectories", "first difference"},
                     .kind = "stats_repeat",
@@ -27,11 +48,12 @@ int compare_repetitions(const Store& store, const RunSelection& selection, const
                                 "bit_equal", "first_difference"},
                     .groups = {},
                     .notes = {}};
-  bool all_equal = true;
+  RepetitionSummary summary;
   for (const RunGroup& group : selection.groups) {
     GroupRows rows{.group = &group, .rows = {}, .data = {}};
     for (const RepetitionRow& row : repetition_report(store, group.runs)) {
-      all_equal = all_equal && row.is_repeatable();
+      summary.all_equal = summary.all_equal && row.is_repeatable();
+      if (!repeats_by_design(row.identity)) summary.confirming += row.repetitions - 1;
       const std::string unknown = row.distinct_trajectories == 1 ? "none" : "not recorded";
       rows.rows.push_back({row.label, fmt::format("{}", row.repetitions), fmt::format("{}", row.failed),
                            fmt::format("{}", row.distinct_trajectories),
@@ -45,12 +67,9 @@ int compare_repetitions(const Store& store, const RunSelection& selection, const
   }
   if (output.groups.empty())
     throw InputError(arguments.store, "contains no repeated run; set `repetitions = 2` in a plan");
-  output.notes = with_left_out({all_equal ? "All repetitions are bit-equal: a single run is sufficient."
-                                          : "Some repetitions differ or failed: evaluate failures and the "
-                                            "spread over repetitions."},
-                               selection);
+  output.notes = with_left_out({repetition_note(summary)}, selection);
   print_stats(output, arguments);
-  return all_equal ? kExitOk : kExitFindings;
+  return summary.all_equal ? kExitOk : kExitFindings;
 }
 
 std::string ate_cell(const std::optional<double>& ate) { return ate ? number_cell(*ate) : "n/a"; }

@@ -131,13 +131,55 @@ TEST(ComparisonAccuracy, AChangeIsNoFactUnlessRepetitionsOfBothSidesAreBitEqual)
     std::erase_if(*side, [](const StoredRun& run) { return run.identity.repetition == 2; });
   const Comparison comparison = compare_runs(single.base, single.head);
   EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
-  EXPECT_TRUE(has_note(comparison, "or repeat each run: bit-equal repetitions make a change exact"));
+  EXPECT_TRUE(has_note(comparison, "or execute each run 2 times: bit-equal repetitions"));
   Sides without_trajectories = repeated(3, 1.1, true);
   for (std::vector<StoredRun>* side : {&without_trajectories.base, &without_trajectories.head}) {
     for (StoredRun& run : *side) run.blobs.clear();
   }
   EXPECT_EQ(compare_runs(without_trajectories.base, without_trajectories.head).result(),
             ChangeClass::kInconclusive);
+}
+
+/// A program with two results, executed `repetitions` times per side on one sequence.
+/// @param results bit i: whether run i has the second result; the runs of base are first
+Comparison comparison_of_results(const std::string& system, int repetitions, unsigned results) {
+  Sides sides;
+  for (int i = 0; i < 2 * repetitions; ++i) {
+    const double ate = (results >> i & 1U) == 0 ? 0.01 : 0.02;
+    StoredRun run = compared_run("a", ate, 1, i < repetitions ? "base" : "head");
+    run.identity.system = system;
+    run.identity.repetition = i % repetitions + 1;
+    (i < repetitions ? sides.base : sides.head).push_back(std::move(run));
+  }
+  return compare_runs(sides.base, sides.head);
+}
+
+// Both sides are the same program: all combinations of results are equally likely.
+TEST(ComparisonAccuracy, AProgramWithTwoResultsIsRarelyCalledWorseOrBetterThanItself) {
+  for (const int repetitions : {2, 3, 4}) {
+    const unsigned combinations = 1U << (2 * repetitions);
+    unsigned called = 0;
+    for (unsigned results = 0; results < combinations; ++results) {
+      const ChangeClass result = comparison_of_results("slam", repetitions, results).result();
+      called += result == ChangeClass::kWorse || result == ChangeClass::kBetter ? 1 : 0;
+    }
+    EXPECT_LE(called, kSignificance * combinations) << repetitions << " repetitions";
+  }
+}
+
+TEST(ComparisonAccuracy, BitEqualRepetitionsOfAnotherProgramAreAFactFromThreeOn) {
+  constexpr unsigned kChange = 0b111000, kChangeOfTwo = 0b1100;
+  EXPECT_EQ(comparison_of_results("slam", 3, kChange).result(), ChangeClass::kWorse);
+  EXPECT_EQ(comparison_of_results("stillpoint", 2, kChangeOfTwo).result(), ChangeClass::kWorse);
+  const Comparison two = comparison_of_results("slam", 2, kChangeOfTwo);
+  EXPECT_EQ(two.result(), ChangeClass::kInconclusive);
+  EXPECT_TRUE(has_note(two, "or execute each run 3 times: bit-equal repetitions"));
+  const RunIdentity other{.system = "slam"}, own{}, own_realtime{.mode = "realtime"};
+  EXPECT_EQ(exact_repetitions(other, 2), 4u);  // 2 * 2 / 4^3 > 0.05
+  EXPECT_EQ(exact_repetitions(other, 6), 4u);
+  EXPECT_EQ(exact_repetitions(other, 7), 5u);
+  EXPECT_EQ(exact_repetitions(own, 100), 2u);
+  EXPECT_EQ(exact_repetitions(own_realtime, 1), 3u);
 }
 
 TEST(ComparisonAccuracy, AChangeOf20PercentOverPerturbationsIsDetected) {

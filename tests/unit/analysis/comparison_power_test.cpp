@@ -8,12 +8,14 @@
 #include <functional>
 #include <iostream>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "bench/analysis/comparison.h"
+#include "bench/analysis/search/bisection.h"
 #include "tests/support/compared_runs.h"
 
 namespace stillpoint::bench {
@@ -111,6 +113,35 @@ TEST(ComparisonPower, EqualProgramsAreCalledDifferentInAtMost5PercentWhateverThe
     std::cout << model.name << ": " << alarms << " false alarms in " << kComparisons << '\n';
     EXPECT_LE(alarms, 0.05 * kComparisons) << model.name;
   }
+}
+
+/// In how many of 200 searches for a change between equal programs one is followed, as `bisect` does: with
+/// the first 8, 16 and 32 pairs.
+int followed_searches(std::size_t looks) {
+  Random random(1);
+  const NoiseModel model{"perturbed, 20 %", "accuracy", false, 1,
+                         [](Random& same) { return normal_factor(same, 0.2); }};
+  int followed = 0;
+  for (int search = 0; search < 200; ++search) {
+    std::vector<StoredRun> base, head;
+    for (int i = 1; i <= 32; ++i) {
+      base.push_back(compared_run("a", model.factor(random), i));
+      head.push_back(compared_run("a", model.factor(random), i, "head"));
+    }
+    bool is_followed = false;
+    for (const std::size_t pairs : {8u, 16u, 32u}) {
+      const Comparison comparison =
+          compare_runs(std::span(base).first(pairs), std::span(head).first(pairs), CompareSource::kPrograms);
+      is_followed = is_followed || followed_change(comparison, "ate_rmse_m", looks);
+    }
+    followed += is_followed ? 1 : 0;
+  }
+  return followed;
+}
+
+TEST(ComparisonPower, ASearchFollowsAChangeOfEqualProgramsRarelyHoweverManyComparisonsItMakes) {
+  EXPECT_LE(followed_searches(3), 10);
+  EXPECT_GT(followed_searches(1), 14) << "the correction is needed";
 }
 
 TEST(ComparisonPower, TenPercentOfTimeWith3PercentNoiseAreFoundWithTenPairs) {

@@ -30,6 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kPairs = 8;  // of the first comparison that tests a change
+
 struct BisectArguments {
   std::string metric;
   std::string range;
@@ -81,7 +83,11 @@ class VersionComparer {
                           : SourceBuilds(own_source(), ".", arguments.builds, interrupt_requested)),
         runs_(external_ ? single_system_runs(load_plan(arguments.plan), arguments.system)
                         : single_runs(load_plan(arguments.plan))) {
-    for (int pairs = 2; pairs < arguments.max_pairs; pairs = pairs == 2 ? 8 : 2 * pairs)
+    if (runs_.runs.empty())
+      throw InputError(arguments.plan, "has no run of the system; see `stillpoint plan show`");
+    // Few pairs first: they are sufficient for an exact change.
+    for (int pairs = static_cast<int>(exact_repetitions(runs_.runs.front().identity, runs_.runs.size()));
+         pairs < arguments.max_pairs; pairs = pairs < kPairs ? kPairs : 2 * pairs)
       numbers_of_pairs_.push_back(pairs);
     numbers_of_pairs_.push_back(arguments.max_pairs);
     require_unchanged_sequences(sequences_, runs_);
@@ -94,7 +100,7 @@ class VersionComparer {
   [[nodiscard]] const std::vector<SourceCommit>& commits() const { return commits_; }
   [[nodiscard]] std::size_t new_builds() const { return new_builds_; }
   [[nodiscard]] std::size_t versions() const { return versions_; }
-  /// 2, 8, 16, ... up to the limit.
+  /// A few, 8, 16, ... up to the limit.
   [[nodiscard]] const std::vector<int>& numbers_of_pairs() const { return numbers_of_pairs_; }
 
   /// @return nullopt if it cannot be built
@@ -166,7 +172,8 @@ std::optional<FollowedChange> find_change(VersionComparer& versions, const Bisec
                                           std::size_t base, std::size_t head) {
   for (const int pairs : versions.numbers_of_pairs()) {
     const Comparison comparison = versions.compare(base, head, pairs);
-    std::optional<FollowedChange> change = followed_change(comparison, arguments.metric);
+    std::optional<FollowedChange> change =
+        followed_change(comparison, arguments.metric, versions.numbers_of_pairs().size());
     if (!change) continue;
     std::cout << fmt::format("{}: {}\n", arguments.metric, change_text(comparison, *change));
     return change;
