@@ -211,9 +211,10 @@ std::vector<TestCase> tests_of(const bench::Comparison& comparison) {
   return tests;
 }
 
-std::size_t count_of(const std::vector<TestCase>& tests, bench::ChangeClass result) {
+/// @param element of JUnit, see `element_of`
+std::size_t count_of(const std::vector<TestCase>& tests, const std::string& element) {
   return static_cast<std::size_t>(
-      std::count_if(tests.begin(), tests.end(), [&](const TestCase& test) { return test.result == result; }));
+      std::ranges::count_if(tests, [&](const TestCase& test) { return element_of(test.result) == element; }));
 }
 
 }  // namespace
@@ -268,12 +269,11 @@ std::string comparison_junit(const ComparisonTitle& title, const bench::Comparis
   const std::vector<TestCase> tests = tests_of(comparison);
   std::string body;
   for (const TestCase& test : tests) body += test_case(test);
-  using enum bench::ChangeClass;
   return fmt::format(
              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"{}\" tests=\"{}\" "
              "failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n",
-             escape_html("compare " + title.base + " " + title.head), tests.size(), count_of(tests, kWorse),
-             count_of(tests, kError), count_of(tests, kInconclusive)) +
+             escape_html("compare " + title.base + " " + title.head), tests.size(),
+             count_of(tests, "failure"), count_of(tests, "error"), count_of(tests, "skipped")) +
          body + "</testsuite>\n";
 }
 

@@ -65,8 +65,9 @@ TEST(ComparisonReport, ListsWhatIsMissingFirst) {
   EXPECT_TRUE(text.starts_with("# new compared with old: missing in HEAD\n")) << text;
   EXPECT_NE(text.find("| metric ate_rmse_m | vo on a |"), std::string::npos) << text;
   EXPECT_NE(text.find("--allow-missing"), std::string::npos) << text;
-  EXPECT_NE(comparison_junit({"old", "new"}, lacking).find("<failure message=\"missing in HEAD: metric ate"),
-            std::string::npos);
+  const std::string junit = comparison_junit({"old", "new"}, lacking);
+  EXPECT_NE(junit.find("<failure message=\"missing in HEAD: metric ate"), std::string::npos) << junit;
+  EXPECT_NE(junit.find("failures=\"1\""), std::string::npos) << junit;
   EXPECT_EQ(nlohmann::json::parse(comparison_json({"old", "new"}, lacking))["missing"][0]["head"], 7);
   lacking.missing_allowed = true;
   EXPECT_TRUE(comparison_markdown({"old", "new"}, lacking).starts_with("# new compared with old: same\n"));
