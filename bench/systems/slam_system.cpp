@@ -79,11 +79,13 @@ RunOutcome with_instruction_counts(RunOutcome outcome, const fs::path& folder) {
   return outcome;
 }
 
-/// Manifest without the start time, so that runs with equal manifests share one blob.
-std::string without_start_time(const std::string& manifest) {
+/// Manifest of the program without the start time, so that runs with equal manifests share one blob. The time
+/// of its commit is that of the request, if any: along a history, commits are ordered by it.
+std::string stored_manifest(const std::string& manifest, const RunRequest& request) {
   Json json = Json::parse(manifest);
   json.erase("started");
   return json.dump(2) + "\n";
+  if (!request.commit_time.empty()) json["build"]["git_time"] = request.commit_time;
 }
 
 }  // namespace
@@ -143,7 +145,7 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& 
         result.at("failure").is_string() ? result.at("failure").get<std::string>() : error_doubt(warnings);
     outcome.metrics = stored_metrics(result);
     outcome.costs = module_costs(result.at("timings"));
-    outcome.manifest = without_start_time(eval::read_text_file(request.work / "manifest.json"));
+    outcome.manifest = stored_manifest(eval::read_text_file(request.work / "manifest.json"), request);
   } catch (const Json::exception& error) {
     throw InputError(result_file.string(), "is not a result file: " + json_problem(error));
   }

@@ -32,6 +32,10 @@ fs::path source_folder(const SystemSource& source, const fs::path& repository, c
   return parent / (repository.filename().string() + "-" + hash_text(content_hash(identity)));
 }
 
+std::string utc_text(std::time_t seconds) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(seconds));
+}
+
 /// The line of an error; git writes advice after some.
 std::string git_problem(const std::string& messages) {
   constexpr std::string_view kFatal = "fatal: ";
@@ -103,20 +107,31 @@ std::vector<SourceCommit> SourceBuilds::log(const std::vector<std::string>& argu
     std::getline(fields, commit.hash, kFieldEnd);
     std::getline(fields, seconds, kFieldEnd);
     std::getline(fields, commit.subject);
-    commit.time = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time_t{std::stoll(seconds)}));
+    commit.time = utc_text(std::stoll(seconds));
   }
   return commits;
 }
 
+std::map<std::string, std::string> SourceBuilds::increasing_times(const std::string& newest) const {
+  std::istringstream lines(git({"-c", "log.showSignature=false", "log", "--first-parent", "--reverse",
+                                "--format=%H %ct", newest, "--"}));
+  std::map<std::string, std::string> times;
+  std::time_t last = 0;
+  std::time_t seconds = 0;
+  for (std::string hash; lines >> hash >> seconds; times[hash] = utc_text(last))
+    last = times.empty() ? seconds : std::max(seconds, last + 1);
+  return times;
+}
+
 std::vector<SourceCommit> SourceBuilds::commits(const std::string& range, int most) const {
   const std::string limit = "--max-count=" + std::to_string(most > 0 ? most : -1);
-  std::vector<SourceCommit> commits =
-      log({"--first-parent", limit, "--reverse", "--end-of-options", range, "--"});
+  std::vector<SourceCommit> commits = log({"--first-parent", limit, "--end-of-options", range, "--"});
   if (commits.empty()) throw InputError(range, "contains no commit; write OLD..NEW");
-  for (std::size_t i = 1; i < commits.size(); ++i)
-    commits[i].time = std::max(commits[i].time, commits[i - 1].time);
-  std::stable_sort(commits.begin(), commits.end(),
-                   [](const SourceCommit& a, const SourceCommit& b) { return a.time > b.time; });
+  const std::map<std::string, std::string> times = increasing_times(commits.front().hash);
+  for (SourceCommit& commit : commits) {
+    const auto found = times.find(commit.hash);  // none of another tip of the range
+    if (found != times.end()) commit.time = found->second;
+  }
   return commits;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,9 +52,9 @@ class SourceBuilds {
   SourceBuilds(const ExternalSystem& system, const std::filesystem::path& folder,
                std::function<bool()> stop_requested);
 
-  /// The commits of a range along first parents, by commit time, the newest first; those of equal time with
-  /// the oldest first, so that a history that orders commits by time and first run has their order. A commit
-  /// that is dated before its parent, as after a rebase or by a wrong clock, has the time of the parent.
+  /// The commits of a range along first parents, the newest first. Their times increase along the history,
+  /// whatever the range, so that a dashboard has their order: one that is not later than its parent, as after
+  /// a rebase or by a wrong clock, is dated a second after it.
   /// @param range as for `git rev-list`, e.g. "v1.0..HEAD"
   /// @param most only so many, those nearest to the end of the range; 0 = all
   /// @throws InputError with the message of git if there is no such range, or if it is empty
@@ -83,6 +84,8 @@ class SourceBuilds {
   /// What to do about commits that are missing; empty if the clone is not shallow.
   [[nodiscard]] std::string shallow_remedy() const;
   void add_tree(const SourceCommit& commit, const std::filesystem::path& tree) const;
+  /// Times of a commit and all before it, by hash, as `commits` states them.
+  [[nodiscard]] std::map<std::string, std::string> increasing_times(const std::string& newest) const;
 
   SystemSource source_;
   std::filesystem::path repository_;

@@ -30,5 +30,23 @@ TEST(OwnOdometry, StoresARunThatAnotherProcessInterruptedAsCrashed) {
   EXPECT_NO_THROW(writer.finish(request.identity, outcome));
 }
 
+// A commit that is dated before its parent has the time of the parent, see `SourceBuilds::commits`.
+TEST(OwnOdometry, StoresTheTimeOfTheCommitThatTheHistoryStates) {
+  const TemporaryFolder folder;
+  folder.write("result.json",
+               R"({"status": "ok", "failure": null, "timings": {"modules": {}, "threads": {}}})");
+  folder.write(
+      "manifest.json",
+      R"({"build": {"git_commit": "c0ffee", "git_time": "2024-01-01T00:20:00Z"}, "started": "now"})");
+  RunRequest request;
+  request.work = folder.path();
+  const std::string own = OwnOdometry().outcome(request, {}).manifest;
+  EXPECT_NE(own.find("2024-01-01T00:20:00Z"), std::string::npos) << own;
+  request.commit_time = "2024-01-01T00:40:00Z";
+  const std::string stored = OwnOdometry().outcome(request, {}).manifest;
+  EXPECT_NE(stored.find("\"git_time\": \"2024-01-01T00:40:00Z\""), std::string::npos) << stored;
+  EXPECT_NE(stored.find("\"git_commit\": \"c0ffee\""), std::string::npos) << stored;
+}
+
 }  // namespace
 }  // namespace stillpoint::bench

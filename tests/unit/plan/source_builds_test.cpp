@@ -45,9 +45,12 @@ TEST(SourceBuilds, AreOfTheCommitsNearestToTheEndOfTheRangeWhateverTheirDates) {
   const fs::path repository = folder.path() / "repository";
   add_commits(empty_repository(repository), {10, 10, 10, 40, 20, 30, 50});
   const SourceBuilds builds(kTouchingSource, repository, folder.path() / "builds", {});
-  EXPECT_EQ(subjects(builds.commits("HEAD~4", 2)), "12");  // of equal time, the oldest first
-  EXPECT_EQ(subjects(builds.commits("HEAD")), "6345012");  // 4 and 5 are dated before their parent 3
-  EXPECT_EQ(builds.commits("HEAD").at(2).time, "2024-01-01T00:40:00Z");
+  EXPECT_EQ(subjects(builds.commits("HEAD~4", 2)), "21");
+  EXPECT_EQ(subjects(builds.commits("HEAD")), "6543210");
+  EXPECT_EQ(builds.commits("HEAD").at(2).time, "2024-01-01T00:40:01Z");  // dated before its parent 3
+  // 1 and 2 have the time of 0, also in a range that does not contain it.
+  EXPECT_EQ(builds.commits("HEAD").at(4).time, "2024-01-01T00:10:02Z");
+  EXPECT_EQ(builds.commits("HEAD~4", 1).at(0).time, "2024-01-01T00:10:02Z");
 }
 
 TEST(SourceBuilds, NameWhatAShallowCloneLacks) {
