@@ -74,6 +74,10 @@ inline constexpr const char* kRigHelp =
     "Calibration that overrides that of the sequence: rig.toml, or YAML of Kalibr, OpenCV, ROS, ORB-SLAM, "
     "VINS";
 
+/// Message before `SourceBuilds::build`, if it is busy.
+inline constexpr const char* kWaitForBuild =
+    "wait for another history, bisect or compare, which builds a commit of this repository";
+
 /// Help of the option --builds.
 inline constexpr const char* kBuildsHelp =
     "Folder of work trees and builds of commits, which are kept [builds/ in the cache folder]";

@@ -339,7 +339,15 @@ PlanReport distribute_plan(const PlanMatrix& matrix, const DistributionOptions& 
   require_recorded_boxes(matrix);
   require_class(matrix, options);
   const fs::path folder = job_folder(matrix.plan, options.store);
-  const FileLock lock(folder / "calling", LockKind::kExclusive);
+  const fs::path calling = folder / "calling";
+  if (is_locked(calling) && options.on_step)
+    options.on_step("wait for another call that executes this plan for this store");
+  const FileLock lock(calling, LockKind::kExclusive, options.stop_requested);
+  if (options.stop_requested()) {
+    PlanReport report = report_of(matrix, StoreWriter(options.store));
+    report.interrupted = true;
+    return report;
+  }
   executor.collect();
   std::size_t cached = 0;
   std::vector<std::vector<std::string>> tasks;

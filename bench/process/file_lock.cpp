@@ -14,12 +14,14 @@
 
 namespace stillpoint::bench {
 
-FileLock::FileLock(const std::filesystem::path& file, LockKind kind)
+FileLock::FileLock(const std::filesystem::path& file, LockKind kind,
+                   const std::function<bool()>& stop_requested)
     : descriptor_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   int result = descriptor_ < 0 ? -1 : 0;
   while (descriptor_ >= 0) {
     result = flock(descriptor_, kind == LockKind::kShared ? LOCK_SH : LOCK_EX);
     if (result == 0 || errno != EINTR) break;
+    if (stop_requested && stop_requested()) return;
   }
   if (result == 0) return;
   const int error = errno;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 namespace stillpoint::bench {
 
@@ -14,9 +15,12 @@ enum class LockKind {
 class FileLock {
  public:
   /// Waits until no other process holds a conflicting lock.
-  /// @param file created if it does not exist
+  /// @param file           created if it does not exist
+  /// @param kind           which locks of others conflict
+  /// @param stop_requested polled after each signal; if it returns true, the lock is not taken
   /// @throws InputError if it cannot be opened or locked
-  FileLock(const std::filesystem::path& file, LockKind kind);
+  FileLock(const std::filesystem::path& file, LockKind kind,
+           const std::function<bool()>& stop_requested = nullptr);
   ~FileLock();
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;

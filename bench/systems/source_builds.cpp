@@ -155,8 +155,11 @@ void SourceBuilds::add_tree(const SourceCommit& commit, const fs::path& tree) co
   static_cast<void>(git({"worktree", "add", "--force", "--force", "--detach", tree.string(), commit.hash}));
 }
 
+bool SourceBuilds::is_busy() const { return is_locked(folder_ / "lock"); }
+
 SourceBuild SourceBuilds::build(const SourceCommit& commit) const {
-  const FileLock lock(folder_ / "lock", LockKind::kExclusive);
+  const FileLock lock(folder_ / "lock", LockKind::kExclusive, stop_requested_);
+  if (stop_requested_ && stop_requested_()) return {.failure = "stopped"};
   const fs::path tree = folder_ / commit.hash;
   const fs::path mark = folder_ / (commit.hash + ".built");
   SourceBuild build{.tree = tree, .program = tree / source_.binary, .failure = {}, .use = nullptr};

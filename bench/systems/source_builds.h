@@ -69,6 +69,9 @@ class SourceBuilds {
   /// @throws InputError with the message of git, or if `good` is no ancestor of `bad`
   [[nodiscard]] std::vector<SourceCommit> between(const SourceCommit& good, const SourceCommit& bad) const;
 
+  /// Whether another process builds a commit of this source now: `build` waits for it.
+  [[nodiscard]] bool is_busy() const;
+
   /// Builds a commit in its work tree unless that was done before; other processes wait meanwhile. What the
   /// build printed last is in HASH.log in the folder of the builds.
   [[nodiscard]] SourceBuild build(const SourceCommit& commit) const;
@@ -81,11 +84,11 @@ class SourceBuilds {
  private:
   [[nodiscard]] std::string git(const std::vector<std::string>& arguments) const;
   [[nodiscard]] std::vector<SourceCommit> log(const std::vector<std::string>& arguments) const;
+  /// Times of a commit and all before it, by hash, as `commits` states them.
+  [[nodiscard]] std::map<std::string, std::string> increasing_times(const std::string& newest) const;
   /// What to do about commits that are missing; empty if the clone is not shallow.
   [[nodiscard]] std::string shallow_remedy() const;
   void add_tree(const SourceCommit& commit, const std::filesystem::path& tree) const;
-  /// Times of a commit and all before it, by hash, as `commits` states them.
-  [[nodiscard]] std::map<std::string, std::string> increasing_times(const std::string& newest) const;
 
   SystemSource source_;
   std::filesystem::path repository_;

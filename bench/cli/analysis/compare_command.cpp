@@ -158,6 +158,7 @@ LocatedSystem system_at(const SystemLocation& location, const std::string& build
   const SourceBuilds source(system, builds, interrupt_requested);
   const SourceCommit commit = source.commit(location.commit);
   spdlog::info("build {} {}", commit.short_hash(), commit.subject);
+  if (source.is_busy()) spdlog::info(kWaitForBuild);
   const SourceBuild build = source.build(commit);
   require_uninterrupted();
   if (!build.failure.empty()) throw InputError(location.file + "@" + location.commit, build.failure);

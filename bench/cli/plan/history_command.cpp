@@ -163,6 +163,7 @@ class HistoryRunner {
   }
 
   void measure(const SourceCommit& commit) {
+    if (builds_.is_busy()) spdlog::info(kWaitForBuild);
     const SourceBuild build = builds_.build(commit);
     if (interrupt_requested()) return;
     if (!build.failure.empty()) {

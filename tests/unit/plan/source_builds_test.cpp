@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/time.h>
+
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 
 #include "tests/support/expect_input_error.h"
@@ -113,6 +116,51 @@ TEST(SourceBuilds, KeepsThoseInUseAndNotThoseThatFailed) {
   EXPECT_EQ(builds.keep_latest(0), 1u);
   EXPECT_TRUE(stems(kept, "").empty());
   EXPECT_EQ(stems(kept, ".log"), std::vector<std::string>{fails.hash}) << "tells why it failed";
+}
+
+extern "C" void ignore_signal(int) {}
+
+/// Interrupts system calls of this process every millisecond.
+class Interruptions {
+ public:
+  Interruptions() {
+    struct sigaction action {};
+    action.sa_handler = ignore_signal;  // without SA_RESTART
+    sigaction(SIGALRM, &action, &previous_);
+    set_interval_us(1000);
+  }
+  ~Interruptions() {
+    set_interval_us(0);
+    sigaction(SIGALRM, &previous_, nullptr);
+  }
+  Interruptions(const Interruptions&) = delete;
+  Interruptions& operator=(const Interruptions&) = delete;
+
+ private:
+  static void set_interval_us(suseconds_t interval_us) {
+    const itimerval timer{.it_interval = {0, interval_us}, .it_value = {0, interval_us}};
+    setitimer(ITIMER_REAL, &timer, nullptr);
+  }
+  struct sigaction previous_ {};
+};
+
+// As of another `history` that builds a commit for minutes.
+TEST(SourceBuilds, StopToWaitForAnotherProcess) {
+  const TemporaryFolder folder;
+  const fs::path repository = folder.path() / "repository";
+  add_commits(empty_repository(repository), {10});
+  bool is_stopped = false;
+  const SourceBuilds builds(kTouchingSource, repository, folder.path() / "builds",
+                            [&is_stopped] { return is_stopped; });
+  ASSERT_EQ(builds.build(builds.commit("HEAD")).failure, "");
+  EXPECT_FALSE(builds.is_busy());
+  const FileLock other(fs::directory_iterator(folder.path() / "builds")->path() / "lock",
+                       LockKind::kExclusive);
+  EXPECT_TRUE(builds.is_busy());
+  const SourceCommit commit = builds.commit("HEAD");
+  const Interruptions interruptions;
+  is_stopped = true;
+  EXPECT_EQ(builds.build(commit).failure, "stopped");
 }
 
 }  // namespace

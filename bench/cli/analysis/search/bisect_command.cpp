@@ -107,8 +107,7 @@ class VersionComparer {
   std::optional<SourceBuild> build(std::size_t version) {
     const SourceCommit& commit = commits_[version];
     spdlog::info("build {} {}", commit.short_hash(), commit.subject);
-    SourceBuild build = source_.build(commit);
-    require_uninterrupted();
+    SourceBuild build = built(commit);
     ++versions_;
     new_builds_ += build.cached ? 0 : 1;
     if (build.failure.empty()) return build;
@@ -124,14 +123,24 @@ class VersionComparer {
     fs::create_directories(arguments_.out);
     const fs::path store =
         fs::path(arguments_.out) / (base_commit.short_hash() + "-" + head_commit.short_hash() + ".sqlite");
-    const ExecutedPairs executed = execute(source_.build(base_commit), source_.build(head_commit),
-                                           {base_commit, head_commit}, {pairs, store.string()});
+    const SourceBuild base_build = built(base_commit);
+    const SourceBuild head_build = built(head_commit);
+    const ExecutedPairs executed =
+        execute(base_build, head_build, {base_commit, head_commit}, {pairs, store.string()});
     require_metric(executed, arguments_.metric);
     return compare_runs(with_metric_only(executed.base, arguments_.metric),
                         with_metric_only(executed.head, arguments_.metric), CompareSource::kPrograms);
   }
 
  private:
+  /// @throws Interrupted
+  [[nodiscard]] SourceBuild built(const SourceCommit& commit) const {
+    if (source_.is_busy()) spdlog::info(kWaitForBuild);
+    SourceBuild build = source_.build(commit);
+    require_uninterrupted();
+    return build;
+  }
+
   struct CommitPair {
     SourceCommit base;
     SourceCommit head;
