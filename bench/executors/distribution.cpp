@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -260,9 +261,10 @@ MergeReport merge_tasks(const fs::path& folder, const fs::path& store) {
     if (file.extension() != ".sqlite") continue;
     // Completes a store whose worker was killed while it created it.
     static_cast<void>(StoreWriter(file));
-    const MergeReport merged = merge_stores(file, store);
+    MergeReport merged = merge_stores(file, store);
     report.added += merged.added;
     report.present += merged.present;
+    std::ranges::move(merged.contradicting, std::back_inserter(report.contradicting));
     remove_store(file);
   }
   return report;

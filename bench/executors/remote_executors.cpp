@@ -26,6 +26,15 @@ constexpr int kUnreachable = 255;  // exit code of ssh if it cannot connect
 
 using Words = std::vector<std::string>;
 
+/// Merges the stores of tasks into that of the caller, and names results that arrived twice and differ.
+void collect_tasks(const fs::path& folder, const DistributionOptions& options) {
+  const MergeReport merged = merge_tasks(folder, options.store);
+  if (merged.contradicting.empty() || !options.on_step) return;
+  options.on_step(fmt::format("{} arrived twice with different results, of which the first are kept: {}",
+                              counted(merged.contradicting.size(), "run"),
+                              fmt::join(merged.contradicting, ", ")));
+}
+
 class SshHosts {
  public:
   SshHosts(const PlanMatrix& matrix, const DistributionOptions& options, const SshOptions& ssh)
@@ -112,7 +121,13 @@ class SshHosts {
     Words arguments = {"--archive", "--rsh=" + ssh_command()};
     arguments.insert(arguments.end(), options.begin(), options.end());
     arguments.insert(arguments.end(), {"--", from, to});
-    require_tool({.program = "rsync", .arguments = arguments, .stop_requested = options_.stop_requested});
+    const ToolResult result =
+        call_tool({.program = "rsync", .arguments = arguments, .stop_requested = options_.stop_requested});
+    if (result.exit_code == 0 || stopped()) return;
+    throw InputError("rsync from " + from + " to " + to,
+                     fmt::format("exited with code {}: {}; check the connection and the space on both "
+                                 "sides, and run the command again",
+                                 result.exit_code, result.messages));
   }
 
   [[nodiscard]] std::string remote_path(const Host& host, const std::string& name) const {
@@ -157,7 +172,7 @@ class SshHosts {
     fs::create_directories(results);
     require_rsync({"--include=/store-*", "--include=/store-*/**", "--exclude=*"}, remote_path(host, ""),
                   results.string() + "/");
-    if (!stopped()) merge_tasks(results, options_.store);
+    if (!stopped()) collect_tasks(results, options_);
   }
 
   /// Copies the job to a host, and the recorded sequences if it lacks them.
@@ -239,7 +254,7 @@ class SlurmJobs {
     }
     if (stopped()) return;
     fs::create_directories(folder_ / "job");
-    merge_tasks(folder_ / "job", options_.store);
+    collect_tasks(folder_ / "job", options_);
   }
 
   void execute(int tasks) const {

@@ -65,7 +65,9 @@ int merge(const WorkerArguments& arguments) {
   if (arguments.store.empty()) throw InputError("--store", "is required");
   const MergeReport report = merge_tasks(arguments.folder, arguments.store);
   std::cout << fmt::format("{} added, {} already present\n", counted(report.added, "run"), report.present);
-  return kExitOk;
+  for (const std::string& run : report.contradicting)
+    std::cout << fmt::format("{}: ended with another result there, which is kept\n", run);
+  return report.contradicting.empty() ? kExitOk : kExitFindings;
 }
 
 }  // namespace

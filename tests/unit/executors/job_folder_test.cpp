@@ -160,6 +160,8 @@ TEST(JobFolder, MergingIsIdempotentAndCompletesAnInterruptedMerge) {
   const MergeReport report = merge_tasks(job, store);
   EXPECT_EQ(report.added, 1u);
   EXPECT_EQ(report.present, 1u);
+  ASSERT_EQ(report.contradicting.size(), 1u) << "it ended twice, with different errors";
+  EXPECT_NE(report.contradicting.front().find(run_key(first)), std::string::npos);
   EXPECT_EQ(merge_tasks(job, store).added, 0u);
   const std::vector<StoredRun> runs = Store(store).runs();
   ASSERT_EQ(runs.size(), 2u);
