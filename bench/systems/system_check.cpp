@@ -407,8 +407,15 @@ std::string convention_finding(const ExternalSystem& system, const SmokeTruth& t
                                const Trajectory& estimate) {
   const std::optional<eval::ConventionFinding> found = violation(truth.gt, estimate);
   if (!found) return "";
-  const bool is_unrelated = scaled_error(truth.gt, estimate) > kMaxRelativeError * spread_of(truth.gt);
-  if (is_unrelated && found->convention == eval::Convention::kScale) return "";
+  Trajectory explained = estimate;
+  if (found->convention == eval::Convention::kInvertedPoses) {
+    for (StampedPose& pose : explained.poses) pose.T_w_f = pose.T_w_f.inverse();
+  }
+  // By chance, poses without relation to the motion look like those of another convention.
+  const bool is_of_poses = found->convention == eval::Convention::kScale ||
+                           found->convention == eval::Convention::kBodyFrame ||
+                           found->convention == eval::Convention::kInvertedPoses;
+  if (is_of_poses && scaled_error(truth.gt, explained) > kMaxRelativeError * spread_of(truth.gt)) return "";
   switch (found->convention) {
     case eval::Convention::kInvertedPoses:
       return fmt::format("{}; set inverse = {}", found->message, system.inverse ? "false" : "true");

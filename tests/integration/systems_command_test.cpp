@@ -47,6 +47,13 @@ i < n && $1 + 0.003 > stamp[i] {
   if (KIND == "nanoseconds") t = sprintf("%.0f", t * 1e9)
   if (KIND == "nan" && i % 10 == 5) x = "nan"
   if (KIND == "wrong") { x = sin(i); y = cos(2 * i); z = i % 7 }
+  if (KIND == "turning") {
+    x = cos(i / 20); y = sin(i / 20); z = 0; ax = 0; ay = 0; az = sin(i / 40); aw = cos(i / 40)
+  }
+  if (KIND == "resting") {
+    x = 0.02 * sin(i / 100); y = 0.02 * cos(i / 100); z = 0.02 * sin(i / 33)
+    ax = 0.6 * sin(i / 100); ay = 0.5 * cos(i / 100); az = 0.4 * sin(i / 50); aw = sqrt(1 - ax * ax - ay * ay - az * az)
+  }
   if (KIND != "slow" || i % 3 == 0) printf "%s %s %s %s %.9f %.9f %.9f %.9f\n", t, x, y, z, ax, ay, az, aw
   i++
 }
@@ -195,7 +202,9 @@ TEST(SystemsCheck, NamesWrongStamps) {
 }
 
 TEST(SystemsCheck, NamesPosesThatDoNotFollowTheMotion) {
-  expect_finding(FakeSystem(replay("wrong")).check(), {"do not follow the motion", "calibration"});
+  // The last two look like inverse poses and like poses of the body.
+  for (const char* kind : {"wrong", "turning", "resting"})
+    expect_finding(FakeSystem(replay(kind)).check(), {"do not follow the motion", "calibration"});
 }
 
 TEST(SystemsCheck, NamesAProgramThatHangs) {
