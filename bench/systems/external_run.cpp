@@ -297,9 +297,8 @@ std::string pose_problem(const Trajectory& trajectory, const std::vector<Timesta
       eval::format_stamp(frames.front()), eval::format_stamp(frames.back()));
 }
 
-RunOutcome scored(const ExternalSystem& system, const RunRequest& request, const ProcessResult& process) {
-  const std::unique_ptr<datasets::SensorStream> stream = played_sequence(request);
-  const datasets::SequenceInfo& info = stream->info();
+RunOutcome scored(const ExternalSystem& system, const RunRequest& request, const datasets::SequenceInfo& info,
+                  const ProcessResult& process) {
   SystemTrajectory output = read_output(system, request.work, info);
   RunOutcome result;
   const std::string problem = pose_problem(output.trajectory, info.frame_times);
@@ -360,8 +359,14 @@ RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& 
   }
   if (!fs::exists(request.work / system_.trajectory))
     return failed(Outcome::kLost, "wrote no " + system_.trajectory);
+  std::unique_ptr<datasets::SensorStream> stream;
   try {
-    return scored(system_, request, process);
+    stream = played_sequence(request);
+  } catch (const InputError& error) {  // of a layout that is not exported
+    return failed(Outcome::kBadData, error.what());
+  }
+  try {
+    return scored(system_, request, stream->info(), process);
   } catch (const InputError& error) {
     return failed(Outcome::kCrashed, error.what());
   }

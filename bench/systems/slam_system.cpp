@@ -12,6 +12,7 @@
 #include "bench/record/run_environment.h"
 #include "bench/record/run_files.h"
 #include "bench/run/run_result.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
@@ -84,8 +85,19 @@ RunOutcome with_instruction_counts(RunOutcome outcome, const fs::path& folder) {
 std::string stored_manifest(const std::string& manifest, const RunRequest& request) {
   Json json = Json::parse(manifest);
   json.erase("started");
-  return json.dump(2) + "\n";
   if (!request.commit_time.empty()) json["build"]["git_time"] = request.commit_time;
+  return json.dump(2) + "\n";
+}
+
+/// Why the errors of a run that succeeded may mislead; empty if there is no reason. A fault of the run may
+/// remove images.
+std::string doubt_of(const Json& result, const RunRequest& request) {
+  std::string doubt = error_doubt(result.value("warnings", std::vector<std::string>{}));
+  const Json skipped = result.value("skipped_frames", Json::array());
+  if (skipped.empty() || !request.fault.empty()) return doubt;
+  if (!doubt.empty()) doubt += "; ";
+  return doubt + fmt::format("{} could not be read, the first: {}", counted(skipped.size(), "frame"),
+                             skipped.front().at("reason").get<std::string>());
 }
 
 }  // namespace
@@ -140,9 +152,8 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& 
     outcome.outcome = outcome_of(result.at("status").get<std::string>());
     // By another process: a worker releases the runs that it interrupts itself.
     if (outcome.outcome == Outcome::kInterrupted) outcome.outcome = Outcome::kCrashed;
-    const auto warnings = result.value("warnings", std::vector<std::string>{});
-    outcome.detail =
-        result.at("failure").is_string() ? result.at("failure").get<std::string>() : error_doubt(warnings);
+    outcome.detail = result.at("failure").is_string() ? result.at("failure").get<std::string>()
+                                                      : doubt_of(result, request);
     outcome.metrics = stored_metrics(result);
     outcome.costs = module_costs(result.at("timings"));
     outcome.manifest = stored_manifest(eval::read_text_file(request.work / "manifest.json"), request);

@@ -9,6 +9,7 @@
 
 #include "bench/store/store.h"
 #include "tests/support/program.h"
+#include "tests/support/sequences/fake_sequence.h"
 #include "tests/support/sequences/rendered_sequence.h"
 
 namespace stillpoint {
@@ -109,6 +110,22 @@ TEST(ExternalSystem, WithoutTrajectoryIsLost) {
   EXPECT_EQ(run_bench(folder, "layout = \"tum\"\ntrajectory = \"elsewhere.txt\"\n").exit_code, 1);
   EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kLost);
   EXPECT_EQ(run_of(folder).detail, "wrote no elsewhere.txt");
+}
+
+// Its calibration is missing, which the program does not need: it has not crashed.
+TEST(ExternalSystem, OnASequenceThatCannotBeReadIsBadData) {
+  const TemporaryFolder folder;
+  fake_sequence(folder, "kitchen");
+  folder.write("copy.toml",
+               "name = \"copy\"\nlayout = \"as_is\"\n"
+               "command = [\"cp\", \"{sequence}/groundtruth.txt\", \"{out}/trajectory.tum\"]\n");
+  const fs::path plan =
+      folder.write("plan.toml", "systems = [\"copy.toml\"]\n[recorded]\nsequences = [\"./kitchen\"]\n");
+  const ProgramResult result = run_here(folder, {"bench", plan.string(), "--store", store_of(folder)});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kBadData);
+  EXPECT_NE(run_of(folder).detail.find("rig.toml: the camera calibration is missing"), std::string::npos)
+      << run_of(folder).detail;
 }
 
 TEST(ExternalSystem, WithOnePoseIsLost) {
@@ -289,6 +306,9 @@ TEST(ExternalSystem, ParametersAreSwept) {
   const ProgramResult repeat = run_here(folder, {"stats", "repeat", "--store", store_of(folder)});
   EXPECT_EQ(repeat.exit_code, 0) << repeat.err;
   EXPECT_NE(repeat.out.find("All repetitions are bit-equal"), std::string::npos) << repeat.out;
+  // Two runs were repeated once: 0.05^(1/2) = 0.22.
+  EXPECT_NE(repeat.out.find("up to 78 % of their runs may still differ"), std::string::npos) << repeat.out;
+  EXPECT_EQ(repeat.out.find("a single run is sufficient"), std::string::npos) << repeat.out;
 }
 
 TEST(ExternalSystem, ParameterSetsAreAnAblation) {
@@ -306,9 +326,6 @@ TEST(ExternalSystem, ParameterSetsAreAnAblation) {
   EXPECT_EQ(ablation.exit_code, 0) << ablation.err;
   EXPECT_NE(ablation.out.find("replay+worse"), std::string::npos) << ablation.out;
   EXPECT_NE(ablation.out.find("+200.0 %"), std::string::npos) << ablation.out;  // 0.03 / 0.01 - 1
-  // Two runs were repeated once: 0.05^(1/2) = 0.22.
-  EXPECT_NE(repeat.out.find("up to 78 % of their runs may still differ"), std::string::npos) << repeat.out;
-  EXPECT_EQ(repeat.out.find("a single run is sufficient"), std::string::npos) << repeat.out;
   const std::string page = (folder.path() / "page").string();
   EXPECT_EQ(run_here(folder, {"report", store_of(folder), "--out", page}).exit_code, 0);
 }

@@ -48,5 +48,21 @@ TEST(OwnOdometry, StoresTheTimeOfTheCommitThatTheHistoryStates) {
   EXPECT_NE(stored.find("\"git_commit\": \"c0ffee\""), std::string::npos) << stored;
 }
 
+// As of a damaged image in the cache of renderings: the run succeeds without it.
+TEST(OwnOdometry, NamesImagesThatCouldNotBeRead) {
+  const TemporaryFolder folder;
+  folder.write(
+      "result.json",
+      R"({"status": "ok", "failure": null, "timings": {"modules": {}, "threads": {}}, "skipped_frames":)"
+      R"( [{"index": 3, "reason": "rgb/3.png: is damaged"}, {"index": 4, "reason": "rgb/4.png"}]})");
+  folder.write("manifest.json", "{}");
+  RunRequest request;
+  request.work = folder.path();
+  EXPECT_EQ(OwnOdometry().outcome(request, {}).detail,
+            "2 frames could not be read, the first: rgb/3.png: is damaged");
+  request.fault = "drop";
+  EXPECT_EQ(OwnOdometry().outcome(request, {}).detail, "");
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
