@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
@@ -241,34 +244,88 @@ bool is_row_major(const std::vector<double>& K) {
   return (K.at(2) != 0.0 || K.at(5) != 0.0) && K.at(6) == 0.0 && K.at(7) == 0.0;
 }
 
-/// Open3D's format: width, height, and the 3x3 `intrinsic_matrix` in column-major order.
-Camera read_camera(const std::filesystem::path& file) {
-  require_regular_file(file);
-  std::ifstream in(file);
-  const nlohmann::json root = nlohmann::json::parse(in, nullptr, false);
+constexpr double kFrameRate_hz = 30.0;  ///< of `times_of_frames`
+
+/// A JSON file of Open3D.
+struct CameraFile {
+  std::string name;
+  Camera camera;
+  double depth_units_per_m = 1000.0;
+  double frame_rate_hz = kFrameRate_hz;
+};
+
+/// Units per meter, as Open3D writes them; less than 1 are meters per unit, as librealsense states them.
+double depth_units_per_m(double depth_scale) {
+  return depth_scale > 0.0 && depth_scale < 1.0 ? 1.0 / depth_scale : depth_scale;
+}
+
+/// Open3D's format: width, height, and the 3x3 `intrinsic_matrix` in column-major order; of a RealSense
+/// camera also `depth_scale` and `fps`.
+CameraFile read_camera(const std::filesystem::path& file, const nlohmann::json& root) {
   try {
     const std::vector<double> K = root.at("intrinsic_matrix").get<std::vector<double>>();
     const bool row_major = is_row_major(K);
-    const Camera camera{.width = root.at("width").get<int>(),
-                        .height = root.at("height").get<int>(),
-                        .fx = K.at(0),
-                        .fy = K.at(4),
-                        .cx = K.at(row_major ? 2 : 6),
-                        .cy = K.at(row_major ? 5 : 7),
-                        .model = CameraModel::kRadialTangential,
-                        .distortion = {}};
-    if (camera.width > 0 && camera.height > 0 && camera.fx > 0.0 && camera.fy > 0.0) return camera;
+    CameraFile result{.name = file.filename().string(),
+                      .camera = Camera{.width = root.at("width").get<int>(),
+                                       .height = root.at("height").get<int>(),
+                                       .fx = K.at(0),
+                                       .fy = K.at(4),
+                                       .cx = K.at(row_major ? 2 : 6),
+                                       .cy = K.at(row_major ? 5 : 7),
+                                       .model = CameraModel::kRadialTangential,
+                                       .distortion = {}}};
+    if (root.contains("depth_scale"))
+      result.depth_units_per_m = depth_units_per_m(root.at("depth_scale").get<double>());
+    if (root.contains("fps")) result.frame_rate_hz = root.at("fps").get<double>();
+    const Camera& camera = result.camera;
+    const bool is_positive = camera.width > 0 && camera.height > 0 && camera.fx > 0.0 && camera.fy > 0.0 &&
+                             result.depth_units_per_m > 0.0 && result.frame_rate_hz > 0.0;
+    if (is_positive) return result;
   } catch (const std::exception&) {  // missing key, wrong type or too few numbers: same message for all
   }
-  throw InputError(file.string(),
-                   "is not a camera file; expected width, height and a column-major 3x3 intrinsic_matrix");
+  throw InputError(
+      file.string(),
+      "is not a camera file; expected width, height and a column-major 3x3 intrinsic_matrix, and "
+      "depth_scale (units per meter) and fps, if they are there, greater than 0");
 }
 
-std::string times_note(NameKind names) {
+/// The only JSON file with an `intrinsic_matrix`; others, as config.json of Open3D, are no cameras.
+/// @throws InputError if there are several
+std::optional<CameraFile> find_camera(const std::filesystem::path& folder) {
+  std::optional<CameraFile> found;
+  nlohmann::json found_root;
+  for (const std::filesystem::path& file : visible_files(folder)) {
+    if (file.extension() != ".json") continue;
+    require_regular_file(file);
+    std::ifstream in(file);
+    const nlohmann::json root = nlohmann::json::parse(in, nullptr, false);
+    if (!root.is_object() || !root.contains("intrinsic_matrix")) continue;
+    if (found && found_root["intrinsic_matrix"] != root["intrinsic_matrix"])
+      throw InputError(file.string(), "has another intrinsic_matrix than " + found->name +
+                                          "; move the one that is not of the color images to another folder");
+    if (found) continue;
+    found = read_camera(file, root);
+    found_root = root;
+  }
+  return found;
+}
+
+std::string times_note(NameKind names, double frame_rate_hz) {
   if (names == NameKind::kStamp) return "timestamps: the names of the images";
   const std::string number =
       names == NameKind::kNumber ? "file number" : "position of the name in their order";
-  return "timestamps: " + number + " / 30 s, as the images have none";
+  return fmt::format("timestamps: {} / {:g} s, as the images have none", number, frame_rate_hz);
+}
+
+/// The camera, the unit of depth, and the times of images that are numbered at another rate than 30 Hz.
+SequenceContent with_camera_file(SequenceContent content, const CameraFile& file, NameKind names) {
+  content.info.rig.camera = file.camera;
+  content.info.rig.depth_units_per_m = file.depth_units_per_m;
+  content.info.notes.push_back("calibration: " + file.name);
+  if (names == NameKind::kStamp || file.frame_rate_hz == kFrameRate_hz) return content;
+  for (Timestamp& t : content.info.frame_times)
+    t.ns = std::llround(static_cast<double>(t.ns) * kFrameRate_hz / file.frame_rate_hz);
+  return content;
 }
 
 SequenceContent read_folder(const std::filesystem::path& folder, FaultLog& faults) {
@@ -277,15 +334,13 @@ SequenceContent read_folder(const std::filesystem::path& folder, FaultLog& fault
   content.info.folder = folder;
   const NameKind names = add_folder_images(content);
   add_other_sensors(content, names, faults);
-  for (const std::filesystem::path& file : visible_files(folder)) {
-    if (file.extension() != ".json") continue;
-    content.info.rig.camera = read_camera(file);
-    content.info.notes.push_back("calibration: " + file.filename().string());
-    break;
-  }
-  content.missing_calibration = "the folder has no JSON file with the camera";
-  content.info.notes.push_back("depth: 1000 raw units per meter, unless a rig.toml sets [depth] scale");
-  content.info.notes.push_back(times_note(names));
+  const std::optional<CameraFile> camera = find_camera(folder);
+  if (camera) content = with_camera_file(std::move(content), *camera, names);
+  content.missing_calibration = "the folder has no JSON file with the intrinsic_matrix of the camera";
+  content.info.notes.push_back(
+      fmt::format("depth: {:g} raw units per meter, unless a rig.toml sets [depth] scale",
+                  content.info.rig.depth_units_per_m));
+  content.info.notes.push_back(times_note(names, camera.value_or(CameraFile{}).frame_rate_hz));
   return content;
 }
 

@@ -205,9 +205,12 @@ TEST(BadSequence, MissingCalibrationErrorSuggestsARigFile) {
   const TemporaryFolder folder;
   write_plain_folder(folder);
   folder.write("camera.json", "{}");
-  expect_rejected(folder, {"camera.json", "intrinsic_matrix"});
-  std::filesystem::remove(folder.path() / "camera.json");
-  expect_rejected(folder, {"rig.toml", "no JSON file", "camera = { width = 640"});
+  expect_rejected(folder, {"rig.toml", "no JSON file with the intrinsic_matrix", "camera = { width = 640"});
+  folder.write("camera.json", R"({"width": 8, "height": 6, "intrinsic_matrix": [10, 0]})");
+  expect_rejected(folder, {"camera.json", "expected width, height"});
+  folder.write("camera.json",
+               R"({"width": 8, "height": 6, "depth_scale": 0, "intrinsic_matrix": [1,0,0,0,1,0,4,3,1]})");
+  expect_rejected(folder, {"camera.json", "depth_scale"});
 }
 
 TEST(BadSequence, FaultyRecordedBoxesAreAnError) {

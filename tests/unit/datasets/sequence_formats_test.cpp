@@ -314,6 +314,36 @@ TEST(FolderFormat, ReadsARowMajorCameraMatrix) {
   EXPECT_EQ(camera.cy, 2.5);
 }
 
+TEST(FolderFormat, ReadsUnitOfDepthAndFrameRateOfARealSense) {
+  const TemporaryFolder folder;
+  write_plain_folder(folder);
+  folder.write("camera.json",
+               R"({"width": 8, "height": 6, "intrinsic_matrix": [10, 0, 0, 0, 11, 0, 3.5, 2.5, 1],
+                                  "depth_scale": 4000.0001220703125, "fps": 60})");
+  const auto stream = open_sequence(folder.path());
+  const SequenceInfo& info = stream->info();
+  EXPECT_NEAR(info.rig.depth_units_per_m, 4000.0, 1e-3);
+  EXPECT_EQ(info.frame_times[0], Timestamp{116'666'667});  // 7 / 60 s
+  EXPECT_EQ(stream->load_frame(2).depth.at<std::uint16_t>(0, 0), 1000);
+  EXPECT_TRUE(has_note(info, "4000 raw units per meter"));
+  EXPECT_TRUE(has_note(info, "file number / 60 s"));
+  folder.write("camera.json",
+               R"({"width": 8, "height": 6, "intrinsic_matrix": [10, 0, 0, 0, 11, 0, 3.5, 2.5, 1],
+                                  "depth_scale": 0.001})");
+  EXPECT_EQ(open_sequence(folder.path())->info().rig.depth_units_per_m, 1000.0);
+}
+
+TEST(FolderFormat, FindsTheCameraAmongOtherJsonFiles) {
+  const TemporaryFolder folder;
+  write_plain_folder(folder);
+  folder.write("a_config.json", R"({"path_dataset": "/data", "depth_max": 3.0})");
+  EXPECT_EQ(open_sequence(folder.path())->info().rig.camera.fy, 11.0);
+  folder.write("a_depth.json",
+               R"({"width": 8, "height": 6, "intrinsic_matrix": [9, 0, 0, 0, 9, 0, 3.5, 2.5, 1]})");
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
+                     {"camera.json", "another intrinsic_matrix than a_depth.json", "move"});
+}
+
 /// Three images color/NAME.png and depth/NAME.png with the depths 1, 2 and 3 m.
 void write_named_folder(const TemporaryFolder& folder, const std::vector<std::string>& names) {
   write_plain_folder(folder);
