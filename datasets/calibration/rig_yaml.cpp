@@ -121,31 +121,42 @@ void YamlRig::read_kalibr(const SensorYaml& yaml) {
   read_kalibr_axes(imu);
 }
 
-/// Measured acceleration: M a + bias; measured rate: M C_gyro_i w + A a + bias.
+/// Kalibr: measured acceleration M a + bias, measured rate M C_gyro_i w + A a + bias.
+/// OpenVINS: Ta R_IMUtoACC a + bias, and Tw R_IMUtoGYRO w + Tg a + bias.
 void YamlRig::read_kalibr_axes(const SensorYaml& imu) {
   const auto matrix = [](const SensorYaml& sensor, const std::string& key) -> Eigen::Matrix3d {
     const std::vector<double> values = sensor.numbers(key);
     if (values.size() != 9) sensor.fail(key, "must have 9 numbers (3x3)");
     return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
   };
-  const auto set = [this](const SensorYaml& sensor, const Eigen::Matrix3d& axes, Eigen::Matrix3d& to) {
+  const auto axes_of = [&](const SensorYaml& sensor, const std::string& key, const std::string& rotation) {
+    Eigen::Matrix3d axes = matrix(sensor, key);
+    if (sensor.has(rotation)) axes = axes * matrix(sensor, rotation);
     if (!are_plausible_axes(axes))
-      sensor.fail("M", "is not within 0.2 of the identity matrix: turned axes are not supported");
-    to = axes;
+      sensor.fail(key, "is not within 0.2 of the identity matrix: turned axes are not supported");
+    return axes;
   };
+  const auto note_influence = [&](const SensorYaml& sensor, const std::string& key) {
+    if (sensor.has(key) && !matrix(sensor, key).isZero(0.0))
+      note("the influence " + key + " of accelerations on the gyroscope is not read");
+  };
+  ImuAxes& result = result_.rig.imu_axes;
   if (imu.has("accelerometers") && imu.child("accelerometers").has("M")) {
-    const SensorYaml sensor = imu.child("accelerometers");
-    set(sensor, matrix(sensor, "M"), result_.rig.imu_axes.accel);
+    result.accel = axes_of(imu.child("accelerometers"), "M", "");
+    note("axes of the accelerometer");
+  } else if (imu.has("Ta")) {
+    result.accel = axes_of(imu, "Ta", "R_IMUtoACC");
     note("axes of the accelerometer");
   }
-  if (!imu.has("gyroscopes") || !imu.child("gyroscopes").has("M")) return;
-  const SensorYaml sensor = imu.child("gyroscopes");
-  Eigen::Matrix3d axes = matrix(sensor, "M");
-  if (sensor.has("C_gyro_i")) axes = axes * matrix(sensor, "C_gyro_i");
-  set(sensor, axes, result_.rig.imu_axes.gyro);
-  note("axes of the gyroscope");
-  if (sensor.has("A") && !matrix(sensor, "A").isZero(0.0))
-    note("the influence A of accelerations on the gyroscope is not read");
+  if (imu.has("gyroscopes") && imu.child("gyroscopes").has("M")) {
+    result.gyro = axes_of(imu.child("gyroscopes"), "M", "C_gyro_i");
+    note("axes of the gyroscope");
+    note_influence(imu.child("gyroscopes"), "A");
+  } else if (imu.has("Tw")) {
+    result.gyro = axes_of(imu, "Tw", "R_IMUtoGYRO");
+    note("axes of the gyroscope");
+    note_influence(imu, "Tg");
+  }
 }
 
 /// Spellings of OpenCV: with or without underscores, in several versions of its calibration program.

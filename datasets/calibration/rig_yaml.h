@@ -14,8 +14,9 @@ namespace stillpoint::datasets {
 /// as
 ///   OpenVINS writes it) and timeshift_cam_imu (IMU time minus camera time, as `Rig::time_offset_s`); imu0 or
 ///   the file itself with noise densities, and of the model scale-misalignment the axes: those of the
-///   accelerometer are M, of the gyroscope M C_gyro_i; A, the influence of accelerations on it, is not read.
-///   EuRoC: sensor.yaml of a camera, whose body is the IMU, or of an IMU.
+///   accelerometer are M, of the gyroscope M C_gyro_i; those of OpenVINS are Ta R_IMUtoACC and Tw
+///   R_IMUtoGYRO. A or Tg, the influence of accelerations on the gyroscope, is not read. EuRoC: sensor.yaml
+///   of a camera, whose body is the IMU, or of an IMU.
 /// - OpenCV and CameraInfo of ROS: camera_matrix, distortion_coefficients, image_width, image_height; or K,
 /// D,
 ///   width, height.

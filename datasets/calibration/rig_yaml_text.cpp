@@ -63,9 +63,10 @@ std::string comments(const std::vector<std::pair<std::string_view, double>>& val
   return text;
 }
 
-/// A 3x3 matrix as a list of rows, of a sensor of imu0.
-std::string sensor_matrix(const std::string& key, const Eigen::Matrix3d& matrix) {
-  std::string text = "    " + key + ":\n";
+/// A 3x3 matrix as a list of rows.
+/// @param key with the blanks in front of it, at most four
+std::string axes_matrix(const std::string& key, const Eigen::Matrix3d& matrix) {
+  std::string text = key + ":\n";
   for (int row = 0; row < 3; ++row)
     text +=
         fmt::format("    - [{:.17g}, {:.17g}, {:.17g}]\n", matrix(row, 0), matrix(row, 1), matrix(row, 2));
@@ -75,9 +76,17 @@ std::string sensor_matrix(const std::string& key, const Eigen::Matrix3d& matrix)
 /// The model "scale-misalignment" of Kalibr, whose gyroscope may be turned in the IMU.
 std::string kalibr_axes(const ImuAxes& axes) {
   if (axes == ImuAxes{}) return "";
-  return "  model: scale-misalignment\n  accelerometers:\n" + sensor_matrix("M", axes.accel) +
-         "  gyroscopes:\n" + sensor_matrix("M", axes.gyro) + sensor_matrix("A", Eigen::Matrix3d::Zero()) +
-         sensor_matrix("C_gyro_i", Eigen::Matrix3d::Identity());
+  return "  model: scale-misalignment\n  accelerometers:\n" + axes_matrix("    M", axes.accel) +
+         "  gyroscopes:\n" + axes_matrix("    M", axes.gyro) + axes_matrix("    A", Eigen::Matrix3d::Zero()) +
+         axes_matrix("    C_gyro_i", Eigen::Matrix3d::Identity());
+}
+
+/// The model "kalibr" of OpenVINS, which requires all of these matrices.
+std::string openvins_axes(const ImuAxes& axes) {
+  return "  model: kalibr\n" + axes_matrix("  Tw", axes.gyro) +
+         axes_matrix("  R_IMUtoGYRO", Eigen::Matrix3d::Identity()) + axes_matrix("  Ta", axes.accel) +
+         axes_matrix("  R_IMUtoACC", Eigen::Matrix3d::Identity()) +
+         axes_matrix("  Tg", Eigen::Matrix3d::Zero());
 }
 
 /// Axes as comments of the formats that do not have them.
@@ -113,7 +122,7 @@ std::string kalibr_text(const Rig& rig, bool openvins) {
              "  accelerometer_random_walk: {:.17g}\n",
              rig.time_offset_s, rig.imu_noise.gyro_noise, rig.imu_noise.gyro_walk, rig.imu_noise.accel_noise,
              rig.imu_noise.accel_walk) +
-         (openvins ? "" : kalibr_axes(rig.imu_axes));
+         (openvins ? openvins_axes(rig.imu_axes) : kalibr_axes(rig.imu_axes));
 }
 
 std::string opencv_text(const Rig& rig) {
@@ -202,7 +211,7 @@ std::string rig_text(const Rig& rig, RigFormat format) {
     case RigFormat::kKalibr:
       return kalibr_text(rig, false);
     case RigFormat::kOpenvins:
-      return head + kalibr_text(rig, true) + axes_comments(rig.imu_axes);
+      return head + kalibr_text(rig, true);
     case RigFormat::kOpencv:
       return head + opencv_text(rig) + axes_comments(rig.imu_axes);
     case RigFormat::kOrbSlam:

@@ -2,6 +2,7 @@
 /// Calibrations of other programs, given as a rig file.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,28 @@ TEST(RigYaml, ReadsAndWritesTheAxesOfKalibr) {
   EXPECT_EQ(rig_of(rig_text(rig, RigFormat::kKalibr)).rig.imu_axes, axes);
   EXPECT_NE(rig_text(rig, RigFormat::kVins).find("# not in this format: gyro_axes = [1.02"),
             std::string::npos);
+}
+
+TEST(RigYaml, ReadsAndWritesTheAxesOfOpenvins) {
+  const std::string accel =
+      "Ta:\n  - [1.01, 0, 0]\n  - [0.002, 0.99, 0]\n  - [0, 0.003, 1]\n"
+      "R_IMUtoACC: [[1, 0, 0.01], [0, 1, 0], [-0.01, 0, 1]]\n";
+  const std::string gyro =
+      "Tw: [[1.02, 0, 0], [0, 1, 0], [0, 0, 1]]\nR_IMUtoGYRO: [[1, 0.01, 0], [-0.01, 1, 0], [0, 0, 1]]\n";
+  const OverriddenRig read = rig_of(kKalibrImu + accel + gyro + "Tg: [[0, 0, 0], [0, 0, 1e-4], [0, 0, 0]]\n");
+  const ImuAxes axes = read.rig.imu_axes;
+  // Ta R_IMUtoACC, Tw R_IMUtoGYRO
+  EXPECT_TRUE(
+      axes.accel.isApprox(Eigen::Matrix3d{{1.01, 0, 0.0101}, {0.002, 0.99, 0.00002}, {-0.01, 0.003, 1}}));
+  EXPECT_TRUE(axes.gyro.isApprox(Eigen::Matrix3d{{1.02, 0.0102, 0}, {-0.01, 1, 0}, {0, 0, 1}}));
+  EXPECT_NE(std::ranges::find(read.notes, "the influence Tg of accelerations on the gyroscope is not read"),
+            read.notes.end());
+  expect_refused(kKalibrImu + "Tw: [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]\n", {"Tw", "identity"});
+  Rig rig;
+  rig.camera = {.width = 8, .height = 6, .fx = 5, .fy = 5, .cx = 4, .cy = 3};
+  rig.has_imu = true;
+  rig.imu_axes = axes;
+  EXPECT_EQ(rig_of(rig_text(rig, RigFormat::kOpenvins)).rig.imu_axes, axes);
 }
 
 TEST(RigYaml, ReadsTheInverseTransformOfOpenVinsAndOfEuroc) {
@@ -305,6 +328,9 @@ TEST(RigYaml, ProgramsThatReadByOpenCvFindNumbersAndMatrices) {
   EXPECT_EQ(std::string(orb_slam["File.version"]), "1.0");
   const cv::FileStorage openvins = open(RigFormat::kOpenvins);
   EXPECT_EQ(static_cast<double>(openvins["cam0"]["T_imu_cam"][1][3]), rig.T_b_c.p.y());
+  for (const char* const key : {"Tw", "R_IMUtoGYRO", "Ta", "R_IMUtoACC"})  // required
+    EXPECT_EQ(static_cast<double>(openvins["imu0"][key][2][2]), 1.0) << key;
+  EXPECT_EQ(static_cast<double>(openvins["imu0"]["Tg"][2][2]), 0.0);
   EXPECT_EQ(static_cast<double>(open(RigFormat::kVins)["body_T_cam0"].mat().at<double>(2, 3)),
             rig.T_b_c.p.z());
   EXPECT_EQ(open(RigFormat::kOpencv)["camera_matrix"].mat().at<double>(1, 2), rig.camera.cy);
