@@ -28,6 +28,7 @@
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
+#include "datasets/synthetic/sequence/presets.h"
 #include "eval/io/text_reader.h"
 #include "reports/tables/data_table.h"
 
@@ -212,7 +213,16 @@ struct AddArguments {
   bool force = false;
 };
 
+/// `run` could not tell the sequence from the rendering.
+void require_no_preset(const std::string& name) {
+  const std::vector<std::string> presets = synth::preset_names();
+  if (std::ranges::find(presets, name) == presets.end()) return;
+  throw InputError("sequence name \"" + name + "\"",
+                   "is that of a rendered sequence; choose another name, such as recorded_" + name);
+}
+
 int add(const AddArguments& arguments) {
+  require_no_preset(arguments.name);
   const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(arguments.folder);
   const RegisteredSequence sequence{.name = arguments.name,
                                     .folder = std::filesystem::canonical(arguments.folder),
