@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -191,6 +192,8 @@ void export_euroc(const SensorStream& stream, const fs::path& folder, const Expo
     write_euroc_images(stream, unfinished / "mav0" / "cam0", control);
     write_boxes(stream.info(), unfinished);
     write_euroc_texts(stream.info(), unfinished / "mav0");
+    // The files of EuRoC have no time offset and no readout time.
+    eval::write_text_file(unfinished / "rig.toml", rig_file_text(stream.info().rig));
   });
 }
 
@@ -324,6 +327,23 @@ std::string companion_rig(Rig rig) {
   return rig_file_text(rig, false);
 }
 
+/// The files beside a bag, and their texts; without a text there must be no file, as it would be read.
+std::map<fs::path, std::string> companions_of(const SequenceInfo& info, const fs::path& path) {
+  return {{companion_file(path, "rig.toml"), companion_rig(info.rig)},
+          {companion_file(path, "detections.txt"),
+           info.detections.empty() ? "" : detections_text(info.detections)}};
+}
+
+/// NAME.bag and NAME.mcap have the same files beside them.
+/// @throws InputError if one exists with another text
+void require_no_others(const std::map<fs::path, std::string>& companions) {
+  std::error_code ignored;
+  for (const auto& [file, text] : companions) {
+    if (fs::exists(file, ignored) && eval::read_text_file(file) != text)
+      throw InputError(file.string(), "exists, and belongs to another bag of this name; choose another name");
+  }
+}
+
 }  // namespace
 
 void export_bag(const SensorStream& stream, const fs::path& path, const std::string& compression,
@@ -333,10 +353,11 @@ void export_bag(const SensorStream& stream, const fs::path& path, const std::str
     throw InputError("compression \"" + compression + "\"", "is unknown; expected none, bz2, lz4 or zstd");
   std::error_code ignored;
   if (fs::exists(path, ignored)) throw InputError(path.string(), "exists; choose another name or remove it");
+  require_no_others(companions_of(stream.info(), path));
   BagExporter(stream, path, *method).run(control);
-  eval::write_text_file(companion_file(path, "rig.toml"), companion_rig(stream.info().rig));
-  if (!stream.info().detections.empty())
-    eval::write_text_file(companion_file(path, "detections.txt"), detections_text(stream.info().detections));
+  for (const auto& [file, text] : companions_of(stream.info(), path)) {  // a folder of rosbag2 contains them
+    if (!text.empty()) eval::write_text_file(file, text);
+  }
 }
 
 }  // namespace stillpoint::datasets

@@ -27,7 +27,8 @@ void export_tum(const SensorStream& stream, const std::filesystem::path& folder,
                 const ExportControl& control = {});
 
 /// EuRoC ASL: mav0/cam0 (gray), mav0/imu0, mav0/state_groundtruth_estimate0 (pose of the IMU in the world;
-/// velocity and biases are written as 0).
+/// velocity and biases are written as 0), and rig.toml with time offset and readout time, which these files
+/// do not have.
 /// @throws InputError as above, and if there is no IMU
 void export_euroc(const SensorStream& stream, const std::filesystem::path& folder,
                   const ExportControl& control = {});

@@ -57,6 +57,36 @@ TEST(SequenceExport, EurocKeepsAllCoefficientsOfTheLens) {
             stream.info_.rig.camera.distortion);
 }
 
+TEST(SequenceExport, EveryLayoutKeepsTimeOffsetAndReadoutTime) {
+  const TemporaryFolder folder;
+  SmallStream stream;
+  stream.info_.rig.time_offset_s = 0.0125;
+  stream.info_.rig.rolling_shutter_s = 0.02;
+  export_tum(stream, folder.path() / "tum");
+  export_euroc(stream, folder.path() / "euroc");
+  export_bag(stream, folder.path() / "a.bag", "none");
+  for (const char* const name : {"tum", "euroc", "a.bag"}) {
+    const Rig rig = open_sequence(folder.path() / name)->info().rig;
+    EXPECT_EQ(rig.time_offset_s, 0.0125) << name;
+    EXPECT_EQ(rig.rolling_shutter_s, 0.02) << name;
+  }
+}
+
+TEST(SequenceExport, DoesNotReplaceTheFilesOfAnotherBagOfTheName) {
+  const TemporaryFolder folder;
+  SmallStream stream;
+  export_bag(stream, folder.path() / "a.bag");
+  export_bag(stream, folder.path() / "a.mcap");  // of the same recording
+  std::filesystem::remove(folder.path() / "a.mcap");
+  stream.info_.rig.time_offset_s = 0.01;
+  expect_input_error([&] { export_bag(stream, folder.path() / "a.mcap"); },
+                     {"a.rig.toml", "another bag of this name"});
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.mcap"));
+  EXPECT_EQ(open_sequence(folder.path() / "a.bag")->info().rig.time_offset_s, 0.0);
+  folder.write("b.detections.txt", "1.0\n");  // without boxes of its own, those would be read
+  expect_input_error([&] { export_bag(stream, folder.path() / "b.bag"); }, {"b.detections.txt"});
+}
+
 TEST(SequenceExport, EurocRequiresAnImu) {
   const TemporaryFolder folder;
   SmallStream stream;
