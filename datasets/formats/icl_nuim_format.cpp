@@ -40,19 +40,19 @@ std::optional<Timestamp> time_of_index(Timestamp index) {
   return eval::time_of_frame(index.ns / kOne);
 }
 
-/// Rows `index depth index color`; the indices are frame numbers.
+/// Rows `index depth index color`, or color first; the indices are frame numbers.
 void add_frame_pairs(SequenceContent& content, FaultLog& faults) {
   const std::filesystem::path& folder = content.info.folder;
   const std::filesystem::path file = associations_file(folder);
   const std::string text = eval::read_text_file(file);
   eval::for_each_row(text, file.string(), faults, [&](const eval::TextRow& row) {
-    if (row.fields.size() < 4)
-      throw row.error("expected the four fields: index, depth image, index, color image");
-    const std::optional<Timestamp> t = time_of_index(row.time(2, eval::TimeUnit::kSeconds));
-    if (!t) throw row.error("the index " + std::string(row.fields[2]) + " is no frame number");
+    const std::size_t color = color_stamp_column(row);
+    const std::optional<Timestamp> t = time_of_index(row.time(color, eval::TimeUnit::kSeconds));
+    if (!t) throw row.error("the index " + std::string(row.fields[color]) + " is no frame number");
     if (!content.info.frame_times.empty()) row.require_increasing(content.info.frame_times.back(), *t);
     content.info.frame_times.push_back(*t);
-    content.frame_files.push_back({.color = folder / row.fields[3], .depth = folder / row.fields[1]});
+    content.frame_files.push_back(
+        {.color = folder / row.fields[color + 1], .depth = folder / row.fields[3 - color]});
   });
   if (content.frame_files.empty()) throw InputError(file.string(), "contains no images; copy the file again");
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -114,6 +115,17 @@ std::vector<Timestamp> stamps_of(const std::vector<StampedFile>& files) {
 }
 
 }  // namespace
+
+std::size_t color_stamp_column(const eval::TextRow& row) {
+  if (row.fields.size() < 4) throw row.error("expected the four fields: stamp, image, stamp, image");
+  const auto names_depth = [&row](std::size_t column) {
+    return row.text(column).find("depth") != std::string_view::npos;
+  };
+  const bool depth_first = names_depth(1);
+  if (depth_first == names_depth(3))
+    throw row.error("exactly one of the two paths must contain \"depth\", to tell the depth image");
+  return depth_first ? 2 : 0;
+}
 
 std::filesystem::path associations_file(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "associations.txt";

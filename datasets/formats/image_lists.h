@@ -70,6 +70,11 @@ enum class MissingImages { kKeep, kDrop };
 /// `content` with the frames, and a note on the color images that were dropped.
 [[nodiscard]] SequenceContent with_frames(SequenceContent content, const PairedImages& images);
 
+/// Of a row `stamp image stamp image` of associate.py, color or depth first: the column of the stamp of the
+/// color image, 0 or 2. The path of the depth image contains "depth".
+/// @throws InputError if the row has fewer fields, or not exactly one path contains "depth"
+[[nodiscard]] std::size_t color_stamp_column(const eval::TextRow& row);
+
 /// The list of pairs that associate.py writes, associations.txt or associate.txt, which may not exist.
 [[nodiscard]] std::filesystem::path associations_file(const std::filesystem::path& folder);
 

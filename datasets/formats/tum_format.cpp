@@ -97,8 +97,6 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
       "imu: default noise densities, unless a rig.toml sets [imu] gyro_noise etc.");
 }
 
-bool names_depth(std::string_view path) { return path.find("depth") != std::string_view::npos; }
-
 constexpr double kMaxFrameNumber = 1e7;   // larger numbers are stamps
 constexpr double kMinNanoseconds = 1e15;  // larger numbers are no seconds
 
@@ -118,18 +116,14 @@ Timestamp association_time(const eval::TextRow& row, std::size_t field) {
   return row.time(field, is_ns ? eval::TimeUnit::kNanoseconds : eval::TimeUnit::kSeconds);
 }
 
-/// Rows `stamp image stamp image` as associate.py writes them, color or depth first: the path tells. Rows
+/// Rows `stamp image stamp image` as associate.py writes them. Rows
 /// whose images are not less than 20 ms apart are dropped, as by `pair_images`.
 PairedImages read_associations(const std::filesystem::path& file, FaultLog& faults) {
   const std::string text = eval::read_text_file(file);
   const std::string name = file.string();
   PairedImages images;
   eval::for_each_row(text, name, faults, [&](const eval::TextRow& row) {
-    if (row.fields.size() < 4) throw row.error("expected the four fields: stamp, image, stamp, image");
-    const bool depth_first = names_depth(row.text(1));
-    if (depth_first == names_depth(row.text(3)))
-      throw row.error("exactly one of the two paths must contain \"depth\", to tell the depth image");
-    const std::size_t color = depth_first ? 2 : 0;
+    const std::size_t color = color_stamp_column(row);
     const std::size_t depth = 2 - color;
     const Timestamp t = association_time(row, color);
     const double depth_offset_s = seconds_between(t, association_time(row, depth));

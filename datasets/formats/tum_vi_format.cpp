@@ -20,6 +20,7 @@ void set_tum_vi_rig(SequenceContent& content) {
   rig.camera = camera.camera();
   rig.has_imu = true;
   rig.T_b_c = camera.pose("T_cam_imu").inverse();
+  if (camera.has("timeshift_cam_imu")) rig.time_offset_s = camera.number("timeshift_cam_imu");
   rig.imu_noise = SensorYaml(calibration / "imu_config.yaml").imu_noise();
 }
 

@@ -88,6 +88,19 @@ TEST(IclNuimFormat, FrameNumbersAreTimesAndTheMirroredAxisIsRestored) {
   EXPECT_TRUE(poses[0].T_w_f.p.isApprox(Eigen::Vector3d(1, -2, 3)));
 }
 
+TEST(IclNuimFormat, ThePathTellsTheDepthImageOfAPair) {
+  const TemporaryFolder folder;
+  write_icl_images(folder);
+  folder.write("associations.txt", "0 rgb/0.png 0 depth/0.png\n4 rgb/2.png 3 depth/1.png\n");
+  const auto stream = open_sequence(folder.path());
+  EXPECT_EQ(stream->info().frame_times[1], Timestamp{133'333'333});  // 4 / 30 s
+  EXPECT_EQ(stream->load_frame(1).depth.at<std::uint16_t>(0, 0), 10000);
+  EXPECT_EQ(stream->load_frame(1).color.at<cv::Vec3b>(0, 0)[2], 3);
+  folder.write("associations.txt", "0 rgb/0.png 0 d/0.png\n");
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
+                     {"associations.txt:1", "contain \"depth\""});
+}
+
 TEST(IclNuimFormat, GroundTruthOfAnotherCameraIsNotMirrored) {
   const TemporaryFolder folder;
   write_icl_images(folder);
@@ -128,7 +141,8 @@ TEST(TumViFormat, DeepImagesAndTheCalibrationOfKalibrAreRead) {
       "cam0:\n  T_cam_imu:\n  - [1.0, 0.0, 0.0, 0.1]\n  - [0.0, 1.0, 0.0, 0.0]\n  - [0.0, 0.0, 1.0, 0.0]\n"
       "  - [0.0, 0.0, 0.0, 1.0]\n  camera_model: pinhole\n  distortion_coeffs: [0.003, 0.0007, -0.002, "
       "0.0002]\n"
-      "  distortion_model: equidistant\n  intrinsics: [190.9, 190.8, 4.5, 2.5]\n  resolution: [8, 6]\n");
+      "  distortion_model: equidistant\n  intrinsics: [190.9, 190.8, 4.5, 2.5]\n  resolution: [8, 6]\n"
+      "  timeshift_cam_imu: -0.002\n");
   folder.write("dso/imu_config.yaml",
                "accelerometer_noise_density: 0.0028\naccelerometer_random_walk: 0.00086\n"
                "gyroscope_noise_density: 0.00016\ngyroscope_random_walk: 2.2e-05\n");
@@ -139,6 +153,7 @@ TEST(TumViFormat, DeepImagesAndTheCalibrationOfKalibrAreRead) {
   EXPECT_EQ(info.rig.camera.distortion[2], -0.002);
   EXPECT_EQ(info.rig.imu_noise.accel_walk, 0.00086);
   EXPECT_NEAR(info.rig.T_b_c.p.x(), -0.1, 1e-15);
+  EXPECT_EQ(info.rig.time_offset_s, -0.002);
   EXPECT_EQ(stream->load_frame(0).gray.at<std::uint8_t>(3, 3), 0x12);
   EXPECT_EQ(stream->load_frame(1).gray.at<std::uint8_t>(3, 3), 7);
   EXPECT_TRUE(stream->load_frame(0).depth.empty());
