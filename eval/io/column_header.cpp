@@ -91,7 +91,7 @@ struct AxisName {
 };
 
 std::optional<AxisName> axis_name(std::string_view name) {
-  if (name.empty()) return std::nullopt;
+  if (name.empty() || name.ends_with("yaw")) return std::nullopt;
   const std::size_t axis = kAxes.find(name.back());
   if (axis == std::string_view::npos) return std::nullopt;
   name.remove_suffix(1);
@@ -266,6 +266,15 @@ std::vector<std::size_t> columns_of(const TableHeader& header, Quantity quantity
   }
   if (std::find(found.begin(), found.end(), kNone) != found.end()) return {};
   return found;
+}
+
+bool names_euler_angles(const TableHeader& header) {
+  constexpr std::array<std::string_view, 3> kAngles{"roll", "pitch", "yaw"};
+  return std::ranges::all_of(kAngles, [&header](std::string_view angle) {
+    return std::ranges::any_of(header.columns, [angle](const TableHeader::Column& column) {
+      return std::string_view(column.name).ends_with(angle);
+    });
+  });
 }
 
 std::string unit_of(const TableHeader& header, Quantity quantity) {

@@ -69,6 +69,9 @@ struct TimeColumns {
 /// @return empty unless the header names each exactly once
 [[nodiscard]] std::vector<std::size_t> columns_of(const TableHeader& header, Quantity quantity);
 
+/// Whether the header names roll, pitch and yaw.
+[[nodiscard]] bool names_euler_angles(const TableHeader& header);
+
 /// Unit of the first column of a vector; empty if the header states none, or does not name the vector.
 [[nodiscard]] std::string unit_of(const TableHeader& header, Quantity quantity);
 

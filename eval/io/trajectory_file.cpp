@@ -224,8 +224,8 @@ bool is_other_length(std::string_view unit) {
 }
 
 /// By the header, else by the format.
-/// @throws InputError if a header that is no comment does not name the columns of a pose, or states another
-/// unit of positions than m
+/// @throws InputError if a header that is no comment does not name the columns of a pose, or a header states
+/// another unit of positions than m, or Euler angles
 RowLayout layout_of(const NamedText& source, const RowFormat& format) {
   const TableHeader header = find_header(source.text);
   const std::optional<TimeColumns> time = time_columns(header);
@@ -234,6 +234,9 @@ RowLayout layout_of(const NamedText& source, const RowFormat& format) {
   RowLayout layout{.pose = consecutive_columns(1, format.order), .unit = format.unit};
   if (const std::string unit = unit_of(header, Quantity::kPosition); is_other_length(unit))
     throw InputError(source.name, header.line, "the positions are in " + unit + "; convert them to m");
+  if (q.empty() && names_euler_angles(header))
+    throw InputError(source.name, header.line,
+                     "the orientations are roll, pitch and yaw; convert them to quaternions qx qy qz qw");
   if (time && !p.empty() && !q.empty() && fits_rows(header, source.text)) {
     layout = {.time = *time, .unit = named_unit(source, header, format.unit), .is_named = true};
     std::copy(q.begin(), q.end(), std::copy(p.begin(), p.end(), layout.pose.begin()));

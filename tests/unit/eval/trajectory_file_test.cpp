@@ -245,6 +245,25 @@ TEST(ParseTum, AUnitOfPositionsOtherThanMetersIsAnError) {
   EXPECT_EQ(message_of("t [s],x [m],y [m],z [m],qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n"), "no error");
 }
 
+TEST(ParseTum, EulerAnglesAreAnError) {
+  // As a quaternion, (0, 0, 0.01, 1) would have norm 1.
+  for (const char* const header : {"# t x y z roll pitch yaw status\n", "t,x,y,z,roll,pitch,yaw,status\n"}) {
+    expect_input_error(
+        [&] { static_cast<void>(parse_tum(std::string(header) + "1 1 2 3 0 0 0.01 1\n", "a")); },
+        {"a:1", "roll, pitch and yaw", "quaternions"});
+  }
+}
+
+TEST(ParseTum, AnglesBesideAQuaternionAreIgnored) {
+  const LoadedTrajectory loaded = parse_tum(
+      "__time,/odom/position/x,/odom/position/y,/odom/position/z,/odom/orientation/pitch,"
+      "/odom/orientation/roll,/odom/orientation/w,/odom/orientation/x,/odom/orientation/y,"
+      "/odom/orientation/yaw,/odom/orientation/z\n1,2,3,4,9,9,0,1,0,9,0\n",
+      "a");
+  EXPECT_EQ(loaded.trajectory.poses[0].T_w_f.q.x(), 1.0);
+  EXPECT_EQ(loaded.trajectory.poses[0].T_w_f.p.z(), 4.0);
+}
+
 TEST(ParseTum, LinesThatEndWithCarriageReturnsOnlyAreAnError) {
   EXPECT_NE(
       message_of("1 2 3 4 0 0 0 1\r2 2 3 4 0 0 0 1\r").find("a.txt:1: lines end with carriage returns only"),
