@@ -232,6 +232,15 @@ void require_brightness(const SequenceContent& content) {
                        " are used; is it a depth image? scale gray images to the whole range or to 8 bits");
 }
 
+/// Frame numbers and milliseconds in the place of seconds: whole numbers that are no seconds since 1970.
+bool has_whole_numbers(const std::vector<Timestamp>& times) {
+  constexpr std::size_t kLeastFrames = 10;
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  constexpr std::int64_t kLargest = 100'000'000;
+  return times.size() >= kLeastFrames && times.back().ns < kLargest * kSecond_ns &&
+         std::ranges::all_of(times, [](Timestamp t) { return t.ns % kSecond_ns == 0; });
+}
+
 /// `content` with warnings about the repaired rows of the ground truth.
 SequenceContent with_warnings(SequenceContent content) {
   for (const std::string& text : eval::repair_texts(content.truth_repairs))
@@ -360,6 +369,11 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   correct_axes(content.info);
   check_overlap(content.info, faults);
   faults.guard([&content] { require_brightness(content); });
+  if (has_whole_numbers(content.info.frame_times))
+    content.info.warnings.push_back(fmt::format(
+        "images: the stamps are whole numbers, the first two {} s apart: if these are frame numbers or "
+        "milliseconds, convert them to seconds",
+        (content.info.frame_times[1].ns - content.info.frame_times[0].ns) / 1'000'000'000));
   if (const auto finding = float_depth_finding(samples_of_float_depth(content)))
     content.info.warnings.push_back("depth: " + *finding);
   for (const std::string& finding : imu_unit_findings(content.info))

@@ -95,6 +95,22 @@ TEST(SequenceValidator, FaultyRowsThatLeaveNothingAreTheError) {
                      {"associations.txt:1", "1700000000050"});
 }
 
+TEST(SequenceValidator, WarnsAboutFrameNumbersInThePlaceOfStamps) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  std::filesystem::remove(folder.path() / "groundtruth.txt");
+  std::string color;
+  std::string depth;
+  for (int i = 0; i < 10; ++i) {
+    color += std::to_string(i) + " rgb/1.000000.png\n";
+    depth += std::to_string(i) + " depth/1.005000.png\n";
+  }
+  folder.write("rgb.txt", color);
+  folder.write("depth.txt", depth);
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(count(report, "images", "whole numbers, the first two 1 s apart"), 1U) << report_text(report);
+}
+
 TEST(SequenceValidator, ReportsGaps) {
   const TemporaryFolder folder;
   write_valid_sequence(folder);
