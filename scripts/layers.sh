@@ -160,7 +160,7 @@ row bench/minimal core/base bench/config bench/cli bench/plan bench/run bench/sy
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_module\.cpp$'
   '<blosc            ^datasets/cache/frame_file\.cpp$'
-  '<isa-l/           ^datasets/(io/(image_io|png/huffman_deflate)|bags/bag_chunks)\.cpp$'
+  '<isa-l/           ^datasets/(io/(image_io|png/huffman_deflate)|bags/bag_chunks|download/archive_extraction)\.cpp$'
   '<(bzlib|lz4)       ^datasets/bags/bag_chunks\.cpp$'
   '<turbojpeg        ^datasets/io/image_io\.cpp$'
   '<embree[34]/        ^datasets/synthetic/render/embree\.h$'

@@ -60,7 +60,9 @@ std::vector<DetectionSet> detect_boxes(const datasets::SensorStream& stream, Obj
 bool fetch_detector(const CatalogueDataset& network, const FetchOptions& options,
                     const FetchControl& control) {
   return std::ranges::all_of(network.archives, [&](const datasets::CatalogueArchive& file) {
-    return download_locked(network, file, options, control);
+    const std::optional<LockedDownload> download = download_locked(network, file, options, control);
+    if (download) record_first_use(*download, options, control);
+    return download.has_value();
   });
 }
 

@@ -106,30 +106,34 @@ fs::path download_path(const fs::path& root, const CatalogueDataset& dataset, co
   return root / dataset.name / "downloads" / fs::path(file).filename();
 }
 
-bool download_locked(const CatalogueDataset& dataset, const CatalogueArchive& archive,
-                     const FetchOptions& options, const FetchControl& control) {
-  const std::string key = dataset.name + "/" + archive.file;
+std::optional<LockedDownload> download_locked(const CatalogueDataset& dataset,
+                                              const CatalogueArchive& archive, const FetchOptions& options,
+                                              const FetchControl& control) {
+  LockedDownload result{.key = dataset.name + "/" + archive.file, .first_use = {}};
   datasets::DownloadRequest request = request_of(dataset, archive, options);
   fs::create_directories(request.file.parent_path());
   const DataLock lock = read_data_lock(options.root);
-  const auto locked = lock.files.find(key);
+  const auto locked = lock.files.find(result.key);
   if (request.sha256.empty() && locked != lock.files.end()) request.sha256 = locked->second.sha256;
   const std::string name = request.file.filename().string();
   const auto downloaded = datasets::download(request, control.step("downloading " + name));
-  if (!downloaded) return false;
-  if (locked != lock.files.end()) return true;
-  const bool is_published = !archive.sha256.empty() || !archive.md5.empty();
-  lock_file(options.root, key,
-            {.bytes = downloaded->digests.bytes,
-             .sha256 = downloaded->digests.sha256,
-             .url = downloaded->url,
-             .date = utc_now(),
-             .published = is_published});
-  if (!is_published) {
-    control.report(fmt::format("{}: no digest is published; SHA-256 {} is recorded and required from now on",
-                               name, downloaded->digests.sha256));
-  }
-  return true;
+  if (!downloaded) return std::nullopt;
+  if (locked != lock.files.end()) return result;
+  result.first_use = LockedFile{.bytes = downloaded->digests.bytes,
+                                .sha256 = downloaded->digests.sha256,
+                                .url = downloaded->url,
+                                .date = utc_now(),
+                                .published = !archive.sha256.empty() || !archive.md5.empty()};
+  return result;
+}
+
+void record_first_use(const LockedDownload& download, const FetchOptions& options,
+                      const FetchControl& control) {
+  if (!download.first_use) return;
+  lock_file(options.root, download.key, *download.first_use);
+  if (download.first_use->published) return;
+  control.report(fmt::format("{}: no digest is published; SHA-256 {} is recorded and required from now on",
+                             fs::path(download.key).filename().string(), download.first_use->sha256));
 }
 
 VerifiedState verify_sequence(const RegisteredSequence& sequence) {

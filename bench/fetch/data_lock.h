@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,13 +66,26 @@ struct FetchControl {
                                                   const datasets::CatalogueDataset& dataset,
                                                   const std::string& file);
 
-/// Downloads to `download_path`, whose folder is created. Without a published SHA-256, that of the first
-/// download is required.
-/// @return false if stopped
+/// A file of the catalogue that has been downloaded.
+struct LockedDownload {
+  std::string key;                      ///< "dataset/file"
+  std::optional<LockedFile> first_use;  ///< to be recorded; nullopt if it is
+};
+
+/// Downloads to `download_path`, whose folder is created. Without a published SHA-256, that of the first use
+/// is required.
+/// @return nullopt if stopped
 /// @throws InputError as `datasets::download`
-[[nodiscard]] bool download_locked(const datasets::CatalogueDataset& dataset,
-                                   const datasets::CatalogueArchive& archive, const FetchOptions& options,
-                                   const FetchControl& control);
+[[nodiscard]] std::optional<LockedDownload> download_locked(const datasets::CatalogueDataset& dataset,
+                                                            const datasets::CatalogueArchive& archive,
+                                                            const FetchOptions& options,
+                                                            const FetchControl& control);
+
+/// Records the digest of a file at its first use, after its content was found to be intact: that of a damaged
+/// one would refuse the right file for ever. Safe for several processes.
+/// @throws InputError if it cannot be written
+void record_first_use(const LockedDownload& download, const FetchOptions& options,
+                      const FetchControl& control);
 
 enum class VerifiedState { kEqual, kChanged, kMissing };
 

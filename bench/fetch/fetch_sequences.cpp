@@ -2,6 +2,7 @@
 #include "bench/fetch/fetch_sequences.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -173,8 +174,10 @@ class ArchiveFetch {
 
   /// Downloads to the folder of downloads, and extracts to the staging folder. @return false if stopped
   bool fetch_archive(const CatalogueArchive& archive) {
-    if (!download_locked(dataset_, archive, options_, control_)) return false;
-    return extract(download_path(options_.root, dataset_, archive.file));
+    const std::optional<LockedDownload> download = download_locked(dataset_, archive, options_, control_);
+    if (!download || !extract(download_path(options_.root, dataset_, archive.file))) return false;
+    record_first_use(*download, options_, control_);
+    return true;
   }
 
   bool extract(const fs::path& file) {

@@ -4,11 +4,14 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <fcntl.h>
+#include <isa-l/igzip_lib.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -84,7 +87,7 @@ ArchiveReader::ArchiveReader(const fs::path& file) : file_(file), archive_(new_r
 }
 
 void ArchiveReader::fail(const std::string& problem) const {
-  throw InputError(file_.string(), problem + "; download it again");
+  throw InputError(file_.string(), problem + "; remove it, and download it again");
 }
 
 std::optional<ArchiveEntry> ArchiveReader::next() {
@@ -258,6 +261,49 @@ class Extraction {
   std::vector<fs::path> nested_;
 };
 
+/// Inflates a gzip file, of one or several members, to its end: libarchive does not verify their checksums.
+/// @return false if it is damaged
+bool is_intact_gzip(std::istream& input, const TransferControl& control) {
+  constexpr std::uint8_t kMagic = 0x1f;
+  std::vector<std::uint8_t> compressed(kReadBytes);
+  std::vector<std::uint8_t> content(kBlockBytes);
+  inflate_state state;
+  isal_inflate_init(&state);
+  state.crc_flag = ISAL_GZIP;
+  const auto read_more = [&] {
+    input.read(reinterpret_cast<char*>(compressed.data()), static_cast<std::streamsize>(compressed.size()));
+    state.next_in = compressed.data();
+    state.avail_in = static_cast<std::uint32_t>(input.gcount());
+    return state.avail_in > 0;
+  };
+  read_more();
+  while (!is_stopped(control)) {
+    state.next_out = content.data();
+    state.avail_out = static_cast<std::uint32_t>(content.size());
+    if (isal_inflate(&state) != ISAL_DECOMP_OK) return false;
+    if (state.block_state == ISAL_BLOCK_FINISH) {
+      const bool has_more = state.avail_in > 0 || read_more();
+      if (!has_more || *state.next_in != kMagic) return true;  // gzip ignores other bytes, too
+      isal_inflate_reset(&state);
+      state.crc_flag = ISAL_GZIP;
+    } else if (state.avail_in == 0 && state.avail_out > 0 && !read_more()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// @throws InputError if the file is a damaged gzip file
+void require_intact_gzip(const fs::path& file, const TransferControl& control) {
+  std::ifstream input(file, std::ios::binary);
+  const bool is_gzip = input.get() == 0x1f && input.get() == 0x8b;
+  input.seekg(0);
+  if (is_gzip && !is_intact_gzip(input, control))
+    throw InputError(file.string(),
+                     "is damaged: the checksum of its content is wrong; remove it, and "
+                     "download it again");
+}
+
 /// An archive, and the folder for its content.
 struct ArchiveToExtract {
   fs::path archive;
@@ -274,6 +320,8 @@ ExtractionTotals extract(const ArchiveToExtract& source, ExtractionLimits limits
     limits.before = extraction.totals();
     nested = extraction.nested();
   }
+  // After the extraction, which the limits apply to.
+  if (!limits.before.stopped) require_intact_gzip(source.archive, control);
   for (const fs::path& file : nested) {
     if (limits.before.stopped) break;
     if (source.depth >= limits.max_depth)

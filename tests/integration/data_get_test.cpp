@@ -174,6 +174,22 @@ TEST(DataGet, RequiresTheDigestOfTheFirstUse) {
   EXPECT_EQ(host.registered(), 0U);
 }
 
+TEST(DataGet, RequiresNoDigestOfADamagedFile) {
+  const DatasetHost host;
+  offer_mini(host);
+  const fs::path file = host.path() / "host/mini/a.tgz";
+  const auto size = fs::file_size(file);
+  fs::resize_file(file, size / 2);  // a server that closes the connection early, without the size
+  const ProgramResult damaged = host.get({"mini/a"});
+  EXPECT_EQ(damaged.exit_code, 2);
+  EXPECT_NE(damaged.err.find("remove it, and download it again"), std::string::npos) << damaged.err;
+  EXPECT_EQ(damaged.err.find("required from now on"), std::string::npos) << damaged.err;
+  fs::remove(host.data() / "mini/downloads/a.tgz");
+  offer_mini(host);
+  EXPECT_EQ(host.get({"mini/a"}).exit_code, 0);
+  EXPECT_EQ(host.registered(), 1U);
+}
+
 TEST(DataGet, UsesAMirrorFirst) {
   const DatasetHost host;
   offer_mini(host);

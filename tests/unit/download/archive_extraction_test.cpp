@@ -107,6 +107,28 @@ TEST(ArchiveExtraction, RejectsDamagedArchives) {
                      {"text.zip"});
 }
 
+TEST(ArchiveExtraction, VerifiesTheChecksumOfGzip) {
+  const TemporaryFolder folder;
+  std::string noise(20'000, '\0');
+  std::uint32_t state = 1;
+  for (char& byte : noise) byte = static_cast<char>((state = state * 1'664'525U + 1'013'904'223U) >> 24U);
+  const fs::path file = folder.path() / "a.tgz";
+  write_archive(file, {{"a", noise}, {"b", noise}});
+  const std::string intact = text_of(file);
+  // Also of several members, and with bytes behind the last one.
+  for (const std::string& text : {intact, intact + intact, intact + "no member"}) {
+    std::ofstream(file, std::ios::binary) << text;
+    static_cast<void>(extract_archive(file, folder.path() / "out", {}, {}));
+    EXPECT_EQ(text_of(folder.path() / "out/a"), noise);
+  }
+  // Stored bytes: of the noise, whose values tell nothing about it.
+  std::string damaged = intact;
+  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
+  std::ofstream(file, std::ios::binary) << damaged;
+  expect_input_error([&] { static_cast<void>(extract_archive(file, folder.path() / "out", {}, {})); },
+                     {"a.tgz", "damaged", "download it again"});
+}
+
 TEST(ArchiveExtraction, CanBeStopped) {
   const TemporaryFolder folder;
   write_archive(folder.path() / "a.tar", {{"a", std::string(3'000'000, 'a')}, {"b", "b"}});
