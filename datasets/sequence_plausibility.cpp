@@ -199,8 +199,9 @@ std::vector<std::string> imu_unit_findings(const SequenceInfo& info) {
   }
   const double mean = sum / static_cast<double>(info.imu.size());
   if (mean < kMinMeanAccel || mean > kMaxMeanAccel) {
-    findings.push_back(
-        fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean));
+    findings.push_back(fmt::format(
+        "the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2, and with gravity?",
+        mean));
   }
   const std::optional<double> ratio = rate_ratio(info);
   if (ratio && is_degrees_ratio(*ratio)) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,7 +57,52 @@ double rms_rate(std::span<const datasets::RatePair> pairs) {
   return std::sqrt(squares);
 }
 
-/// Gyroscope in deg/s, accelerometer in g or mg.
+/// Norm of the mean acceleration of each second relative to the mean of the norms: near 1 with gravity, in
+/// any unit.
+double steady_ratio(const datasets::SequenceInfo& info) {
+  constexpr double kSteadyTime_s = 1.0;
+  double means = 0.0, norms = 0.0;
+  for (auto begin = info.imu.begin(); begin != info.imu.end();) {
+    const auto end = std::find_if(begin, info.imu.end(), [&](const ImuSample& sample) {
+      return seconds_between(begin->t, sample.t) >= kSteadyTime_s;
+    });
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (; begin != end; ++begin) {
+      sum += begin->accel_b;
+      norms += begin->accel_b.norm();
+    }
+    means += sum.norm();
+  }
+  return norms > 0.0 ? means / norms : 0.0;
+}
+
+/// Accelerations of a phone's attitude filter, from which gravity was subtracted.
+std::optional<Cause> missing_gravity(const datasets::SequenceInfo& info) {
+  constexpr double kLeastMean = 0.7 * kGravity;
+  constexpr double kLeastRatio = 0.7;  // renderings: 0.96 or more with gravity, 0.05 to 0.38 without
+  const double mean = mean_accel(info);
+  const double ratio = steady_ratio(info);
+  if (mean >= kLeastMean || ratio >= kLeastRatio) return std::nullopt;
+  return Cause{
+      .id = "accel_gravity",
+      .name = "accelerations without gravity",
+      .evidence =
+          fmt::format("the mean acceleration is {:.3g} m/s^2, and over a second {:.0f} % of it remain; "
+                      "a sensor measures gravity, {:.3g} m/s^2, in one direction",
+                      mean, 100.0 * ratio, kGravity),
+      .remedy =
+          "record the accelerations with gravity, as the accelerometer measures them, or run without "
+          "the IMU (--variant vo)",
+      .strength = 1000.0,
+      .correction = Correction{.change =
+                                   [](auto& changed) {
+                                     changed.imu.clear();
+                                     changed.rig.has_imu = false;
+                                   },
+                               .settings = {"imu.enabled=false"}}};
+}
+
+/// Gyroscope in deg/s, accelerometer in g or mg, or without gravity.
 std::vector<Cause> unit_causes(const datasets::SequenceInfo& info, const datasets::RateIntegral& gyro,
                                std::span<const datasets::RateInterval> by_images) {
   std::vector<Cause> causes;
@@ -69,6 +116,10 @@ std::vector<Cause> unit_causes(const datasets::SequenceInfo& info, const dataset
          .remedy = "convert the angular rates of the file to rad/s (times 0.01745329)",
          .strength = 1000.0,
          .correction = Correction{.change = [](auto& changed) { scale_gyro(changed, kDegree); }}});
+  }
+  if (std::optional<Cause> without_gravity = missing_gravity(info)) {
+    causes.push_back(std::move(*without_gravity));
+    return causes;
   }
   const double mean = mean_accel(info);
   for (const auto& [unit, factor] : {std::pair("g", kGravity), std::pair("mg", 0.001 * kGravity)}) {

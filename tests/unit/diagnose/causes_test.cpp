@@ -45,6 +45,18 @@ TEST(InertialCauses, TellUnitsAndTheCorrectionConvertsThem) {
   EXPECT_TRUE(rig.info.imu[500].accel_b.isApprox(rig.imu[500].accel_b, 1e-9));
 }
 
+TEST(InertialCauses, TellAccelerationsWithoutGravity) {
+  TurningRig rig({});
+  double phase = 0.0;  // 1 m/s^2, as gravity in g, but of changing direction
+  for (ImuSample& sample : rig.info.imu)
+    sample.accel_b = Eigen::AngleAxisd(phase += 1.0, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d::UnitX();
+  const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+  ASSERT_EQ(causes.size(), 1U);
+  EXPECT_EQ(causes[0].id, "accel_gravity");
+  causes[0].correction->change(rig.info);
+  EXPECT_TRUE(inertial_causes(rig.info, rig.survey).empty());
+}
+
 TEST(InertialCauses, TellSwappedAxesOfTheGyroscope) {
   TurningRig rig({});
   for (ImuSample& sample : rig.info.imu) sample.gyro_b = sample.gyro_b({1, 0, 2}).eval();
