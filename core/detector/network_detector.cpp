@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <string_view>
 
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/core/version.hpp>
@@ -156,7 +157,9 @@ std::vector<std::string> read_names(const std::string& file) {
   require_text_file("detector.names", file);
   std::ifstream in(file);
   std::vector<std::string> names;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, which editors of Windows write
   for (std::string line; std::getline(in, line);) {
+    if (names.empty() && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
     if (!line.empty()) names.push_back(line);
   }

@@ -115,6 +115,11 @@ TEST(NetworkDetector, RejectsEmptyNames) {
   expect_rejected(files.config, {"net.names", "no class names"});
 }
 
+TEST(NetworkDetector, ReadsNamesBehindAByteOrderMark) {
+  const NetworkFiles files(one_person_onnx(), "\xEF\xBB\xBFperson\r\ncat\r\n");
+  EXPECT_NO_THROW(NetworkDetector(files.config, kPerson));
+}
+
 TEST(NetworkDetector, RejectsNetworksWithoutAnyDynamicClass) {
   const NetworkFiles files;
   expect_rejected(files.config, {"net.names", "dynamic.classes", "\"cat\""},
