@@ -91,8 +91,8 @@ RunOrigins run_origins(const Store& store, std::span<const StoredRun> runs) {
 namespace {
 
 /// Builds, the newest first: by commit time, or the first run without one, then by the first run.
-/// @param own only those of this odometry
-std::vector<std::string> builds_of(std::span<const StoredRun> runs, bool own) {
+/// @param system only its builds; empty: those of all systems
+std::vector<std::string> builds_of(std::span<const StoredRun> runs, const std::string& system) {
   struct BuildTime {
     std::string committed;
     std::string first_run;
@@ -100,7 +100,7 @@ std::vector<std::string> builds_of(std::span<const StoredRun> runs, bool own) {
   };
   std::map<std::string, BuildTime> times;
   for (const StoredRun& run : runs) {
-    if (own && run.identity.system != kOwnSystem) continue;
+    if (!system.empty() && run.identity.system != system) continue;
     const auto [entry, is_new] = times.insert({run.identity.build, {run.committed, run.started, run.id}});
     BuildTime& time = entry->second;
     if (time.committed.empty()) time.committed = run.committed;
@@ -271,13 +271,22 @@ std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan)
 }
 
 std::string newest_build(std::span<const StoredRun> runs) {
-  std::vector<std::string> builds = builds_of(runs, true);
-  if (builds.empty()) builds = builds_of(runs, false);
+  std::vector<std::string> builds = builds_of(runs, kOwnSystem);
+  if (builds.empty()) builds = builds_of(runs, "");
   return builds.empty() ? "" : builds.front();
 }
 
+std::map<std::string, std::string> newest_builds(std::span<const StoredRun> runs) {
+  std::map<std::string, std::string> newest;
+  for (const StoredRun& run : runs) {
+    const std::string& system = run.identity.system;
+    if (!newest.contains(system)) newest[system] = builds_of(runs, system).front();
+  }
+  return newest;
+}
+
 std::string build_named(std::span<const StoredRun> runs, const std::string& name, const std::string& place) {
-  return chosen_build(builds_of(runs, false), name, place);
+  return chosen_build(builds_of(runs, ""), name, place);
 }
 
 RunSelection select_runs(const Store& store, std::vector<StoredRun> runs, const std::string& build) {

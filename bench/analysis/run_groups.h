@@ -4,6 +4,7 @@
 #pragma once
 
 #include <compare>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -75,6 +76,9 @@ struct RunSelection {
 /// The build of this odometry, or without its runs that of any system, with the latest commit time, or the
 /// latest first run where manifests lack it; empty without runs.
 [[nodiscard]] std::string newest_build(std::span<const StoredRun> runs);
+
+/// The newest build of each system, by its name.
+[[nodiscard]] std::map<std::string, std::string> newest_builds(std::span<const StoredRun> runs);
 
 /// The build with a name or unique prefix. A build with uncommitted changes ("abc123+ff00") is another one
 /// than its commit: a name without "+" is no prefix of it.

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "bench/store/maintenance/maintenance.h"
+#include "bench/store/store_writer.h"
 #include "tests/support/program.h"
 #include "tests/support/sequences/fake_sequence.h"
 
@@ -196,6 +198,32 @@ TEST(CompareCommand, BuildsWithoutCommonRunsAreInconclusive) {
   EXPECT_EQ(result.exit_code, 3) << result.out << result.err;
   EXPECT_NE(result.out.find("0 pairs of runs"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("missing in HEAD"), std::string::npos) << result.out;
+}
+
+/// A store with a run of this odometry, and four equal ones of a version of another system.
+fs::path store_of_two_systems(const TemporaryFolder& folder, const std::string& version, double ate_m) {
+  const fs::path file = folder.path() / (version + ".sqlite");
+  bench::StoreWriter writer(file);
+  const auto add = [&](const bench::RunIdentity& identity, double error_m) {
+    const bench::RunOutcome outcome{.metrics = {{"ate_rmse_m", "", "m", error_m}},
+                                    .attachments = {{"trajectory", std::to_string(error_m)}}};
+    EXPECT_TRUE(bench::add_run(writer, identity, outcome));
+  };
+  add({.variant = "vo", .sequence = "a", .build = "same"}, 0.01);
+  for (int i = 1; i <= 4; ++i)
+    add({.system = "slam", .variant = "slam", .sequence = "a", .build = version, .repetition = i}, ate_m);
+  return file;
+}
+
+// The other system has another build than this odometry.
+TEST(CompareCommand, ComparesTheNewestBuildOfEachSystemOfAStore) {
+  const TemporaryFolder folder;
+  const std::string base = store_of_two_systems(folder, "1.0", 0.02);
+  const std::string head = store_of_two_systems(folder, "2.0", 0.08);
+  const ProgramResult result = run_program({"compare", base, head});
+  EXPECT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_NE(result.out.find("5 pairs of runs: 5 compared"), std::string::npos) << result.out;
+  EXPECT_EQ(run_program({"compare", base + "@same", head + "@same"}).exit_code, 0);
 }
 
 TEST(CompareCommand, JsonOnStandardOutputIsTheFile) {

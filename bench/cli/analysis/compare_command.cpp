@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -59,12 +60,15 @@ bool is_program(const std::string& file) {
 /// Tests the file name extension of exported stores.
 bool is_export(const std::string& file) { return file.ends_with(".json"); }
 
-/// Runs of a build; of the newest build if `build` is empty. A build with uncommitted changes is another one
-/// than its commit: "abc123" is no prefix of "abc123+ff00".
+/// Runs of a build; of the newest build of each system if `build` is empty. A build with uncommitted changes
+/// is another one than its commit: "abc123" is no prefix of "abc123+ff00".
 std::vector<StoredRun> runs_of_build(std::vector<StoredRun> runs, const std::string& build,
                                      const std::string& location) {
-  const std::string chosen = build.empty() ? newest_build(runs) : build_named(runs, build, location);
-  std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != chosen; });
+  const std::map<std::string, std::string> newest = newest_builds(runs);
+  const std::string named = build.empty() ? "" : build_named(runs, build, location);
+  std::erase_if(runs, [&](const StoredRun& run) {
+    return run.identity.build != (build.empty() ? newest.at(run.identity.system) : named);
+  });
   if (runs.empty()) throw InputError(location, "has no finished run; see `stillpoint store list`");
   return runs;
 }
@@ -259,7 +263,8 @@ Command compare_command() {
       .example = "compare build/base/stillpoint build/release/stillpoint --plan quick --out build/compare",
       .options =
           {{"BASE",
-            "A store or exported store (.json), of which the newest build is used, STORE@COMMIT, a commit in "
+            "A store or exported store (.json), of which the newest build of each system is used, "
+            "STORE@COMMIT, a commit in "
             "--store, a program to execute, or the description of a system (FILE.toml, or FILE.toml@COMMIT, "
             "which is built)",
             &arguments->base},
