@@ -176,7 +176,7 @@ void Estimator::append(const TrackedFrame& frame) {
   }
   const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
   window_.add_features(frame);
-  monitor_.check_depth(newest_covariance_, window_.states());
+  if (window().has_inertial_prediction()) monitor_.check_depth(newest_covariance_, window_.states());
 }
 
 void Estimator::preintegrate(WindowFrame& next) {
@@ -218,6 +218,8 @@ bool Estimator::refine() {
   window_.choose_keyframe();
   check_data();
   const bool located = window_.localize_newest();
+  // A prediction by constant velocity is too inaccurate for the depths of landmarks in this frame.
+  if (!window().has_inertial_prediction()) monitor_.check_depth(newest_covariance_, window_.states());
   update_.counters.keyframe = window_.keyframe();
   if (!located) {
     discard_newest();

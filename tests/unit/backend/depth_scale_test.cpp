@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "core/backend/estimator.h"
+#include "tests/support/random.h"
+#include "tests/support/simulated/simulated_motion.h"
 #include "tests/support/simulated/simulated_window.h"
 
 namespace stillpoint {
@@ -72,6 +77,37 @@ TEST(DepthMonitor, UsesAScaleThatIsNotKnownAndMoves) {
   EXPECT_FALSE(rejects(monitor, 1.0, 0.1));
   EXPECT_FALSE(rejects(monitor, 0.97, 1.5));
   EXPECT_FALSE(rejects(monitor, 0.94, 1.6));
+}
+
+/// Frame `i` of a camera at 5 Hz that moves to and fro before a wall, 2.7 or 3 m away. A track lasts for
+/// three frames; a third of them begin in each.
+TrackedFrame frame_before_a_wall(int i) {
+  const Camera camera = SimulatedMotion::rig().camera;
+  const double distance_m = i % 2 == 0 ? 3.0 : 2.7;
+  Random places(3);
+  TrackedFrame frame{.id = i, .t = from_seconds(0.2 * i)};
+  for (int k = 0; k < 90; ++k) {
+    const Eigen::Vector3d p_c =
+        places.uniform3({-1.2, -0.9, 0.0}, {1.2, 0.9, 0.0}) + Eigen::Vector3d(0.0, 0.0, distance_m);
+    TrackedFeature feature{.id = 90 * ((i + k) / 3) + k, .pixel = camera.project(p_c), .depth = p_c.z()};
+    feature.bearing = camera.unproject(feature.pixel);
+    frame.features.push_back(feature);
+  }
+  std::ranges::sort(frame.features, {}, &TrackedFeature::id);
+  return frame;
+}
+
+/// At constant velocity the wall would be a tenth nearer or farther than it is: all depth from the third
+/// frame on was rejected. In a hand that also turns, the camera was then lost.
+TEST(DepthMonitor, UsesTheDepthOfACameraThatTurnsBackWithoutAnImu) {
+  ImuConfig no_imu;
+  no_imu.enabled = false;
+  Estimator estimator(BackendConfig{}, no_imu, SimulatedMotion::rig(), 1);
+  for (int i = 0; i < 20; ++i) {
+    const OdometryUpdate& update = estimator.process(frame_before_a_wall(i));
+    EXPECT_EQ(update.status, OdometryStatus::kTracking) << i;
+    EXPECT_EQ(update.counters.depth_landmarks, update.counters.window_landmarks) << i;
+  }
 }
 
 }  // namespace
