@@ -62,11 +62,11 @@ struct FeatureTracker::State {
   void match_features(TrackerPrediction kind);
   void correct_drift(const Frame& frame, const MotionPrior& prior);
   void update_tracks(double interval_s);
-  void reject_outliers(DynamicIds dynamic_ids);
+  void reject_outliers(DynamicIds dynamic_ids, bool is_large);
   void rotate_views();
   [[nodiscard]] static std::size_t count_static(std::span<const Track> of, DynamicIds dynamic_ids);
   [[nodiscard]] bool breaks_down(DynamicIds dynamic_ids) const;
-  void track_again(const Frame& frame, double interval_s, DynamicIds dynamic_ids);
+  bool track_again(const Frame& frame, double interval_s, DynamicIds dynamic_ids);
   void apply_mask();
   void detect_features(const cv::Mat& gray);
   void measure_depth(const Frame& frame);
@@ -117,11 +117,13 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     }
     current_t = frame.t;
   }
-  if (options.detect) reject_outliers(options.dynamic_ids);
+  if (options.detect) reject_outliers(options.dynamic_ids, false);
   if (config.recover_view) {
     const ScopedTimer timer(timings, Module::kFeatureTracking);
-    if (options.detect && breaks_down(options.dynamic_ids))
-      track_again(frame, interval_s, options.dynamic_ids);
+    if (options.detect && breaks_down(options.dynamic_ids) &&
+        !track_again(frame, interval_s, options.dynamic_ids)) {
+      view_recovery.break_down(options.dynamic_ids);
+    }
     view_recovery.process(frame.gray, current, options.dynamic_ids, tracks);
   }
   if (options.detect) {
@@ -181,7 +183,7 @@ void FeatureTracker::State::update_tracks(double interval_s) {
   tracks.resize(kept);
 }
 
-void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids) {
+void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids, bool is_large) {
   const ScopedTimer timer(timings, Module::kOutlierRejection);
   const auto is_exempt = [&](const Track& track) {
     return config.reject_static_only && std::ranges::binary_search(dynamic_ids, track.feature.id);
@@ -196,7 +198,8 @@ void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids) {
       outlier_rejector.find(correspondences, {.model = config.outlier_model,
                                               .threshold_px = config.ransac_threshold_px,
                                               .min_inlier_ratio = config.ransac_min_inlier_ratio,
-                                              .focal_px = camera.focal_px()});
+                                              .focal_px = camera.focal_px(),
+                                              .is_large = is_large});
   auto inlier = inliers.begin();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -226,32 +229,41 @@ std::size_t FeatureTracker::State::count_static(std::span<const Track> of, Dynam
 
 /// Whether few static tracks of the last image continue, or have no common motion.
 bool FeatureTracker::State::breaks_down(DynamicIds dynamic_ids) const {
-  const std::size_t before = count_static(view_recovery.last_tracks(), dynamic_ids);
+  const std::size_t before = count_static(view_recovery.last().tracks, dynamic_ids);
   if (before < kMinStatic) return false;
   return !outlier_rejector.has_model() ||
          static_cast<double>(count_static(tracks, dynamic_ids)) < kMinContinued * static_cast<double>(before);
 }
 
 /// Tracks the features of the last image again, predicted by the motion of matched descriptors, and keeps the
-/// result with more of them.
-void FeatureTracker::State::track_again(const Frame& frame, double interval_s, DynamicIds dynamic_ids) {
+/// result with more of them. @return whether there is such a motion
+bool FeatureTracker::State::track_again(const Frame& frame, double interval_s, DynamicIds dynamic_ids) {
   const std::optional<Pose> motion = view_recovery.motion_since_last(frame.gray, dynamic_ids);
-  if (!motion) return;
+  if (!motion) return false;
   const bool had_model = outlier_rejector.has_model();
-  const std::span<const Track> last = view_recovery.last_tracks();
-  std::vector<Track> first(last.begin(), last.end());
+  std::vector<Track> first = view_recovery.last().tracks;
   first.swap(tracks);
   std::vector<cv::Point2f> first_unstable = std::exchange(unstable, {});
   const int first_lost = std::exchange(lost, 0);
-  track_features(frame, {*motion, true, true}, TrackerPrediction::kFull);
+  const MotionPrior prior{*motion, true, true};
+  predicted = predict_pixels(tracks, {prior, TrackerPrediction::kFull}, camera, std::move(predicted));
+  forward = track_large_motion(config, camera,
+                               {.gray = view_recovery.last().gray,
+                                .tracks = tracks,
+                                .T_now_before = *motion,
+                                .now = current,
+                                .predicted = predicted});
+  if (config.drift_min_correlation > 0.0) correct_drift(frame, prior);
   update_tracks(interval_s);
-  reject_outliers(dynamic_ids);
+  reject_outliers(dynamic_ids, true);
   const bool better = outlier_rejector.has_model() &&
                       (!had_model || count_static(tracks, dynamic_ids) > count_static(first, dynamic_ids));
-  if (better) return;
-  tracks = std::move(first);
-  unstable = std::move(first_unstable);
-  lost = first_lost;
+  if (!better) {
+    tracks = std::move(first);
+    unstable = std::move(first_unstable);
+    lost = first_lost;
+  }
+  return true;
 }
 
 void FeatureTracker::State::apply_mask() {

@@ -6,12 +6,13 @@
 #include <span>
 #include <vector>
 
-#include <opencv2/core/types.hpp>
+#include <opencv2/core/mat.hpp>
 
 #include "core/config/frontend_config.h"
 #include "core/frontend/klt/klt.h"
 #include "core/frontend/track.h"
 #include "core/geometry/camera.h"
+#include "core/geometry/pose.h"
 #include "core/types/nav_state.h"
 
 namespace stillpoint {
@@ -42,6 +43,20 @@ struct FeatureMotion {
 /// @param recycled a pyramid that is no longer needed; its memory is reused
 [[nodiscard]] ImagePyramid build_pyramid(const FrontendConfig& config, const cv::Mat& gray,
                                          ImagePyramid recycled = {});
+
+/// Tracks to find after a large motion.
+struct LargeMotion {
+  const cv::Mat& gray;                        ///< image of the tracks
+  std::span<const Track> tracks;              ///< of that image
+  const Pose& T_now_before;                   ///< motion since then
+  const ImagePyramid& now;                    ///< of the new image
+  const std::vector<cv::Point2f>& predicted;  ///< initial guesses in the new image, by `predict_pixels`
+};
+
+/// Finds tracks by `track_points`, after a roll of more than 20 degrees from their image turned as the camera
+/// has: the point tracker takes patches to be displaced only.
+[[nodiscard]] KltResult track_large_motion(const FrontendConfig& config, const Camera& camera,
+                                           const LargeMotion& motion);
 
 /// @param recycled buffers reused for the result
 [[nodiscard]] KltResult track_points(const FrontendConfig& config, const TrackingRequest& request,

@@ -14,10 +14,10 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kMinView = 20;           ///< tracks of a view that is worth to be recognized
-constexpr int kMinAge = 5;             ///< of these tracks, in images
-constexpr int kMaxAttempts = 60;       ///< images with new tracks; then the camera sees another view
-constexpr std::size_t kMinFound = 12;  ///< matches, inliers of the motion, and continued tracks
+constexpr std::ptrdiff_t kMinView = 20;  ///< tracks of a view that is worth to be recognized
+constexpr int kMinAge = 5;               ///< of these tracks, in images
+constexpr int kMaxAttempts = 60;         ///< images with new tracks; then the camera sees another view
+constexpr std::size_t kMinFound = 12;    ///< matches, inliers of the motion, and continued tracks
 constexpr double kMinInlierRatio = 0.4;
 /// Smallest ratio of a lost view's tracks that are found, of those that the motion moves into the image.
 /// Right motions find 0.3 and more of them, wrong ones about 0.1 (people who walk ahead of the camera).
@@ -33,15 +33,37 @@ constexpr float kMaxDistance = 64.0F;  // of 256 bits
 constexpr float kMaxRatio = 0.8F;      // Lowe 2004, Sec. 7.1
 constexpr float kPatch_px = 31.0F;
 
+/// Upright descriptors are more distinctive, but do not bear a roll of the camera.
+enum class Orientation { kUpright, kOfCorners };
+
 struct Described {
   cv::Mat descriptors;
   std::vector<std::size_t> points;  ///< index of each row; points near the border have none
 };
 
-Described describe(const cv::Mat& gray, const std::vector<cv::Point2f>& pixels) {
+/// Direction from a corner to the centroid of the intensities around it (Rosin 1999, Sec. 2) [deg].
+float orientation(const cv::Mat& gray, cv::Point2f corner) {
+  constexpr int kRadius_px = 15;
+  const cv::Point center(corner);
+  const cv::Rect image(0, 0, gray.cols, gray.rows);
+  double m10 = 0.0, m01 = 0.0;
+  for (int dy = -kRadius_px; dy <= kRadius_px; ++dy) {
+    for (int dx = -kRadius_px; dx <= kRadius_px; ++dx) {
+      const cv::Point pixel = center + cv::Point(dx, dy);
+      if (dx * dx + dy * dy > kRadius_px * kRadius_px || !image.contains(pixel)) continue;
+      const double intensity = gray.at<std::uint8_t>(pixel);
+      m10 += dx * intensity;
+      m01 += dy * intensity;
+    }
+  }
+  return cv::fastAtan2(static_cast<float>(m01), static_cast<float>(m10));
+}
+
+Described describe(const cv::Mat& gray, const std::vector<cv::Point2f>& pixels, Orientation by) {
   std::vector<cv::KeyPoint> points;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    points.emplace_back(pixels[i], kPatch_px, 0.0F, 0.0F, 0, static_cast<int>(i));
+    const float angle = by == Orientation::kUpright ? 0.0F : orientation(gray, pixels[i]);
+    points.emplace_back(pixels[i], kPatch_px, angle, 0.0F, 0, static_cast<int>(i));
   }
   Described described;
   cv::ORB::create(std::max(1, static_cast<int>(points.size())), 1.2F, 1)
@@ -130,17 +152,25 @@ std::optional<Pose> ViewRecovery::motion_since(const View& view, DynamicIds dyna
   const std::vector<cv::Point2f> corners = corners_of(gray);
   if (corners.size() < kMinFound) return std::nullopt;
   const Points points = points_of(view, dynamic_ids);
-  std::vector<PointObservation> matches;
-  for (const auto& [before, now] : match(describe(view.gray, points.pixels), describe(gray, corners))) {
-    const double depth = points.depths[before];
-    if (depth <= 0.0) continue;
-    matches.push_back({depth * camera_.unproject(to_vector(points.pixels[before])).homogeneous(),
-                       camera_.unproject(to_vector(corners[now]))});
+  for (const Orientation by : {Orientation::kUpright, Orientation::kOfCorners}) {
+    std::vector<PointObservation> matches;
+    for (const auto& [before, now] :
+         match(describe(view.gray, points.pixels, by), describe(gray, corners, by))) {
+      const double depth = points.depths[before];
+      if (depth <= 0.0) continue;
+      matches.push_back({depth * camera_.unproject(to_vector(points.pixels[before])).homogeneous(),
+                         camera_.unproject(to_vector(corners[now]))});
+    }
+    if (const std::optional<Pose> T_now_view = common_motion(matches)) return T_now_view;
   }
+  return std::nullopt;
+}
+
+std::optional<Pose> ViewRecovery::common_motion(std::span<const PointObservation> matches) const {
   if (matches.size() < kMinFound) return std::nullopt;
   const double threshold = kMatched_px / camera_.focal_px();
   const std::optional<Pose> T_now_view =
-      estimate_rigid_motion(matches, {.threshold = threshold, .confidence = kConfidence});
+      estimate_rigid_motion(matches, {.threshold = threshold, .confidence = kConfidence, .is_large = true});
   if (!T_now_view) return std::nullopt;
   const auto inliers = std::ranges::count_if(
       matches, [&](const PointObservation& seen) { return bearing_error(seen, *T_now_view) <= threshold; });
@@ -160,16 +190,15 @@ bool ViewRecovery::fits(const Track& before, const Pose& T_now_lost, const Eigen
 
 std::vector<Track> ViewRecovery::continue_tracks(const View& lost, const Pose& T_now_lost,
                                                  const ImagePyramid& pyramid) const {
-  const ImagePyramid before = build_pyramid(config_, lost.gray);
   const MotionPrior motion{T_now_lost, true, true};
-  const std::vector<cv::Point2f> pixels = pixels_of(lost.tracks);
   const std::vector<cv::Point2f> predicted =
       predict_pixels(lost.tracks, {motion, TrackerPrediction::kFull}, camera_);
-  const KltResult forward = track_points(config_, {.from = before,
-                                                   .to = pyramid,
-                                                   .points = pixels,
-                                                   .initial_guesses = predicted,
-                                                   .levels = config_.pyramid_levels});
+  const KltResult forward = track_large_motion(config_, camera_,
+                                               {.gray = lost.gray,
+                                                .tracks = lost.tracks,
+                                                .T_now_before = T_now_lost,
+                                                .now = pyramid,
+                                                .predicted = predicted});
   std::vector<Track> continued;
   int visible = 0;
   for (std::size_t i = 0; i < lost.tracks.size(); ++i) {
@@ -200,13 +229,19 @@ bool ViewRecovery::loses_view(std::size_t continued) const {
   return established >= kMinView && 2 * continued < last_.tracks.size();
 }
 
+void ViewRecovery::lose_last(DynamicIds dynamic_ids) {
+  lost_ = std::move(last_);
+  lost_dynamic_ids_.assign(dynamic_ids.begin(), dynamic_ids.end());
+  attempts_ = 0;
+}
+
+void ViewRecovery::break_down(DynamicIds dynamic_ids) {
+  if (!lost_ && std::ssize(last_.tracks) >= kMinView) lose_last(dynamic_ids);
+}
+
 void ViewRecovery::process(const cv::Mat& gray, const ImagePyramid& pyramid, DynamicIds dynamic_ids,
                            std::vector<Track>& tracks) {
-  if (loses_view(tracks.size())) {
-    lost_ = std::move(last_);
-    lost_dynamic_ids_.assign(dynamic_ids.begin(), dynamic_ids.end());
-    attempts_ = 0;
-  }
+  if (loses_view(tracks.size())) lose_last(dynamic_ids);
   if (!lost_) return;
   attempts_ += tracks.size() >= kMinFound ? 1 : 0;
   if (const std::optional<Pose> T_now_lost = motion_since(*lost_, lost_dynamic_ids_, gray)) {

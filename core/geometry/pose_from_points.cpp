@@ -91,6 +91,14 @@ double required_samples(double inlier_ratio, const ConsensusOptions& options) {
          std::log1p(-std::pow(inlier_ratio, static_cast<double>(options.sample_size)));
 }
 
+Pose turn_to_bearings(const Pose& T_c_w, std::span<const PointObservation> observations) {
+  Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+  for (const PointObservation& seen : observations) {
+    M += seen.bearing.homogeneous().normalized() * (T_c_w * seen.p_w).normalized().transpose();
+  }
+  return Pose{Eigen::Quaterniond(closest_rotation(M).R), Eigen::Vector3d::Zero()} * T_c_w;
+}
+
 PoseConsensus sample_poses(std::span<const PointObservation> observations, const Pose& initial,
                            const PoseSampling& sampling, const std::function<std::size_t()>& random) {
   const auto hypothesis = [&]() -> std::optional<Pose> {

@@ -66,6 +66,12 @@ struct PoseRefinement {
 [[nodiscard]] Pose refine_pose(const Pose& T_c_w, std::span<const PointObservation> observations,
                                const PoseRefinement& refinement);
 
+/// The pose turned about the camera so that the directions of the points agree best with their bearings: an
+/// initial pose for `refine_pose` where a rotation of more than 20 degrees is not known. With n(x) = x / |x|,
+///
+///   R T_c_w,   R = argmax sum_i n(b_i, 1)^T R n(T_c_w p_i)
+[[nodiscard]] Pose turn_to_bearings(const Pose& T_c_w, std::span<const PointObservation> observations);
+
 /// Observations with |pi(T_c_w p) - b| < threshold, at least 5 cm in front of the camera.
 [[nodiscard]] std::size_t count_inliers(const Pose& T_c_w, std::span<const PointObservation> observations,
                                         double threshold);

@@ -83,10 +83,11 @@ std::size_t count_inliers(std::span<const PointObservation> observations, const 
   return inliers;
 }
 
-Pose motion_of_sample(std::span<const PointObservation> observations, std::minstd_rand& random) {
+Pose motion_of_sample(std::span<const PointObservation> observations, bool is_large,
+                      std::minstd_rand& random) {
   std::array<PointObservation, kSampleSize> sample;
   for (PointObservation& one : sample) one = observations[random() % observations.size()];
-  return refine(sample, Pose{}, kQuadraticLossScale);
+  return refine(sample, is_large ? turn_to_bearings({}, sample) : Pose{}, kQuadraticLossScale);
 }
 
 /// With 30 % of the points on moving objects, one sample is free of them with a probability of 0.996. As
@@ -104,7 +105,9 @@ std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> obse
                                           const RigidMotionSettings& settings) {
   if (observations.size() < kSampleSize) return std::nullopt;
   std::minstd_rand random;  // fixed seed: deterministic
-  const auto hypothesis = [&]() -> std::optional<Pose> { return motion_of_sample(observations, random); };
+  const auto hypothesis = [&]() -> std::optional<Pose> {
+    return motion_of_sample(observations, settings.is_large, random);
+  };
   const auto inliers = [&](const Pose& pose) {
     return count_inliers(observations, pose, settings.threshold);
   };
@@ -117,13 +120,14 @@ std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> obse
 }
 
 std::optional<Pose> MajorityMotion::estimate(std::span<const PointObservation> observations,
-                                             double threshold) {
+                                             const RigidMotionSettings& settings) {
   if (observations.size() < kSampleSize) return std::nullopt;
+  const double threshold = settings.threshold;
   std::minstd_rand random;  // fixed seed: deterministic
   double least = std::numeric_limits<double>::infinity();
   Pose best;
   for (int i = 0; i < kMajoritySamples; ++i) {
-    const Pose T_to_from = motion_of_sample(observations, random);
+    const Pose T_to_from = motion_of_sample(observations, settings.is_large, random);
     const double median = median_error(observations, T_to_from);
     if (median >= least) continue;
     least = median;
@@ -171,12 +175,12 @@ bool OutlierRejector::fit_rigid(std::span<const Match> matches, const OutlierRej
     if (match.depth > 0.0) correspondences_.push_back({match.depth * match.from.homogeneous(), match.to});
   }
   if (correspondences_.size() < kMinDepthMatches) return false;
-  const double threshold = settings.threshold_px / settings.focal_px;
-  const std::optional<Pose> T_to_from =
-      settings.model == OutlierModel::kMajority
-          ? majority_motion_.estimate(correspondences_, threshold)
-          : estimate_rigid_motion(correspondences_,
-                                  {.threshold = threshold, .confidence = settings.confidence});
+  const RigidMotionSettings rigid{.threshold = settings.threshold_px / settings.focal_px,
+                                  .confidence = settings.confidence,
+                                  .is_large = settings.is_large};
+  const std::optional<Pose> T_to_from = settings.model == OutlierModel::kMajority
+                                            ? majority_motion_.estimate(correspondences_, rigid)
+                                            : estimate_rigid_motion(correspondences_, rigid);
   if (!T_to_from) return false;
   inliers_.clear();
   for (const Match& match : matches) {

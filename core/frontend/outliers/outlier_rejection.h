@@ -18,13 +18,15 @@ namespace stillpoint {
 struct RigidMotionSettings {
   double threshold = 0.002;  ///< largest reprojection error of an inlier [normalized plane]
   double confidence = 0.99;  ///< probability that at least one sample is free of outliers
+  bool is_large = false;     ///< the motion turns the camera by more than 30 degrees
 };
 
 /// T_to_from, the transform from the earlier to the later camera frame, from points in the earlier one and
 /// their bearings in the later: RANSAC over samples of four, then robust refinement over all of them, see
 /// pose_from_points.h. The scale of the Cauchy loss is half the inlier threshold, because a pose from four
 /// noisy points rejects good matches; samples are fitted by least squares from the identity, as the motion
-/// between two frames is small. Deterministic; allocation-free.
+/// between two frames is small, or else from the rotation between their directions. Deterministic;
+/// allocation-free.
 /// @return nullopt for fewer than four observations, or if RANSAC finds no pose
 [[nodiscard]] std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> observations,
                                                         const RigidMotionSettings& settings);
@@ -38,10 +40,10 @@ struct RigidMotionSettings {
 class MajorityMotion {
  public:
   /// @param observations points in the earlier frame, bearings in the later one
-  /// @param threshold    largest median of the errors [normalized image plane]
+  /// @param settings     the threshold is the largest median of the errors
   /// @return nullopt for fewer than four observations, or a larger median
   [[nodiscard]] std::optional<Pose> estimate(std::span<const PointObservation> observations,
-                                             double threshold);
+                                             const RigidMotionSettings& settings);
 
  private:
   [[nodiscard]] double median_error(std::span<const PointObservation> observations, const Pose& T_to_from);
@@ -65,6 +67,7 @@ struct OutlierRejectionSettings {
   double confidence = 0.99;   ///< probability that at least one sample is free of outliers; as in VINS-Mono
   double min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded
   double focal_px = 0.0;          ///< > 0
+  bool is_large = false;          ///< see RigidMotionSettings
 };
 
 /// `find_inliers` with buffers that are reused between calls; otherwise stateless.

@@ -79,7 +79,7 @@ TEST(DepthMonitor, UsesAScaleThatIsNotKnownAndMoves) {
   EXPECT_FALSE(rejects(monitor, 0.94, 1.6));
 }
 
-/// Frame `i` of a camera at 5 Hz that moves to and fro before a wall, 2.7 or 3 m away. A track lasts for
+/// Frame `i` of a camera at 5 Hz before a wall that is 2.7 and 3 m away in turn. A track lasts for
 /// three frames; a third of them begin in each.
 TrackedFrame frame_before_a_wall(int i) {
   const Camera camera = SimulatedMotion::rig().camera;

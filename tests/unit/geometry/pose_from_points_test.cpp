@@ -53,6 +53,13 @@ TEST(PoseFromPoints, RefinementConvergesFromFifteenDegrees) {
   EXPECT_LT(distance(refine_pose(initial, observe(40), {.scale = 1.0, .steps = 8}), kTcw), 1e-9);
 }
 
+TEST(PoseFromPoints, RefinementConvergesFromAnyRotationAfterATurnToTheBearings) {
+  const Pose initial = Pose{exp_so3({1.5, 2.0, -0.5}), Eigen::Vector3d(0.2, 0.1, -0.3)} * kTcw;
+  const Pose turned = turn_to_bearings(initial, observe(40));
+  EXPECT_LT((turned.inverse().p - initial.inverse().p).norm(), 1e-12);
+  EXPECT_LT(distance(refine_pose(turned, observe(40), {.scale = 1.0, .steps = 8}), kTcw), 1e-9);
+}
+
 TEST(PoseFromPoints, RefinementWithoutPointsReturnsTheInitialPose) {
   EXPECT_LT(distance(refine_pose(kTcw, {}, {}), kTcw), 1e-15);
 }
