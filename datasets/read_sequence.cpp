@@ -232,12 +232,16 @@ void require_brightness(const SequenceContent& content) {
                        " are used; is it a depth image? scale gray images to the whole range or to 8 bits");
 }
 
-/// Frame numbers and milliseconds in the place of seconds: whole numbers that are no seconds since 1970.
+/// Frame numbers, and milliseconds to nanoseconds since the start, in the place of seconds: whole numbers
+/// that are no seconds since 1970, or far apart.
 bool has_whole_numbers(const std::vector<Timestamp>& times) {
   constexpr std::size_t kLeastFrames = 10;
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   constexpr std::int64_t kLargest = 100'000'000;
-  return times.size() >= kLeastFrames && times.back().ns < kLargest * kSecond_ns &&
+  constexpr double kFarApart_s = 10.0;
+  if (times.size() < kLeastFrames) return false;
+  const double mean_s = seconds_between(times.front(), times.back()) / static_cast<double>(times.size() - 1);
+  return (times.back().ns < kLargest * kSecond_ns || mean_s > kFarApart_s) &&
          std::ranges::all_of(times, [](Timestamp t) { return t.ns % kSecond_ns == 0; });
 }
 
@@ -371,8 +375,8 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   faults.guard([&content] { require_brightness(content); });
   if (has_whole_numbers(content.info.frame_times))
     content.info.warnings.push_back(fmt::format(
-        "images: the stamps are whole numbers, the first two {} s apart: if these are frame numbers or "
-        "milliseconds, convert them to seconds",
+        "images: the stamps are whole numbers, the first two {} s apart: if these are frame numbers, "
+        "or not seconds, convert them to seconds",
         (content.info.frame_times[1].ns - content.info.frame_times[0].ns) / 1'000'000'000));
   if (const auto finding = float_depth_finding(samples_of_float_depth(content)))
     content.info.warnings.push_back("depth: " + *finding);

@@ -95,20 +95,25 @@ TEST(SequenceValidator, FaultyRowsThatLeaveNothingAreTheError) {
                      {"associations.txt:1", "1700000000050"});
 }
 
-TEST(SequenceValidator, WarnsAboutFrameNumbersInThePlaceOfStamps) {
+TEST(SequenceValidator, WarnsAboutFrameNumbersAndOtherUnitsInThePlaceOfSeconds) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   std::filesystem::remove(folder.path() / "groundtruth.txt");
-  std::string color;
-  std::string depth;
-  for (int i = 0; i < 10; ++i) {
-    color += std::to_string(i) + " rgb/1.000000.png\n";
-    depth += std::to_string(i) + " depth/1.005000.png\n";
-  }
-  folder.write("rgb.txt", color);
-  folder.write("depth.txt", depth);
-  const CheckReport report = check_sequence(folder.path());
-  EXPECT_EQ(count(report, "images", "whole numbers, the first two 1 s apart"), 1U) << report_text(report);
+  const auto warnings_at = [&](std::int64_t start, std::int64_t step) {
+    std::string color;
+    std::string depth;
+    for (int i = 0; i < 10; ++i) {
+      color += std::to_string(start + i * step) + " rgb/1.000000.png\n";
+      depth += std::to_string(start + i * step) + " depth/1.005000.png\n";
+    }
+    folder.write("rgb.txt", color);
+    folder.write("depth.txt", depth);
+    return count(check_sequence(folder.path()), "images",
+                 "whole numbers, the first two " + std::to_string(step) + " s apart");
+  };
+  EXPECT_EQ(warnings_at(0, 1), 1U);
+  EXPECT_EQ(warnings_at(0, 33'333'333), 1U);  // ns
+  EXPECT_EQ(warnings_at(1'700'000'000, 1), 0U);
 }
 
 TEST(SequenceValidator, ReportsGaps) {
