@@ -122,7 +122,7 @@ void write_calibration(const ExternalSystem& system, const RunRequest& request, 
   fs::create_directories(file.parent_path());
   if (!system.calibration_format.empty()) {
     Rig rig = info.rig;
-    rig.imu_axes = {};  // the exported samples are corrected
+    if (system.layout != ExportLayout::kAsIs) rig.imu_axes = {};  // the exported samples are corrected
     for (const auto& [format, name] : enum_names(datasets::RigFormat{})) {
       if (name == system.calibration_format) eval::write_text_file(file, datasets::rig_text(rig, format));
     }

@@ -94,6 +94,24 @@ TEST(ExternalSystem, HasTheCalibrationInTheFormatOfAProgram) {
   EXPECT_NE(text.find("T_imu_cam"), std::string::npos) << text << result.out;
 }
 
+TEST(ExternalSystem, HasTheInertialAxesWithTheSamplesThatTheyAreOf) {
+  const TemporaryFolder folder;
+  const fs::path sequence = folder.path() / "turned";
+  fs::copy(rendered_sequence(), sequence, fs::copy_options::recursive);
+  folder.write("turned/rig.toml", "imu = { gyro_axes = [1.125, 0, 0, 0, 1, 0, 0, 0, 1] }\n");
+  for (const auto& [layout, row] : {std::pair("as_is", "[1.125, 0, 0]"), std::pair("tum", "[1, 0, 0]")}) {
+    folder.write("s.toml",
+                 std::string("name = \"s\"\nlayout = \"") + layout +
+                     "\"\ncalibration_format = \"openvins\"\ncommand = [\"cat\", \"{calibration}\"]\n");
+    const fs::path out = folder.path() / layout;
+    static_cast<void>(run_here(folder, {"systems", "run", (folder.path() / "s.toml").string(),
+                                        sequence.string(), "--out", out.string()}));
+    std::ifstream file(out / "program.log");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_NE(text.find(std::string("Tw:\n    - ") + row), std::string::npos) << layout << "\n" << text;
+  }
+}
+
 TEST(ExternalSystem, ARunThatEndsOnTheInterruptionIsNotStored) {
   const TemporaryFolder folder;
   folder.write(
