@@ -52,7 +52,8 @@ void require_unused(const std::vector<RegisteredSequence>& sequences, const Regi
 }  // namespace
 
 fs::path registry_file() {
-  if (fs::path file = datasets::variable_or_empty("STILLPOINT_REGISTRY"); !file.empty()) return file;
+  if (const fs::path file = datasets::variable_or_empty("STILLPOINT_REGISTRY"); !file.empty())
+    return fs::absolute(file);
   const fs::path folder = datasets::user_folder("XDG_CONFIG_HOME", ".config");
   return folder.empty() ? folder : folder / "sequences.json";
 }
