@@ -31,9 +31,8 @@ constexpr ResultWord kWords[] = {
      "head"},
     {kCompare, "exact",
      "in place of p: counted instructions, or all repetitions of each side are bit-equal (two or more, of "
-     "other systems three, of several sequences more); the difference is a fact about this sequence, without "
-     "a "
-     "test"},
+     "other systems three, of several sequences more); the difference is a fact about this sequence, "
+     "without a test"},
     {kCompare, "error", "all runs failed on both sides"},
     {kCompare, "reported only",
      "does not decide: a cost of runs that were not made to measure it, a time that is unlike, or too few "

@@ -42,8 +42,7 @@ struct FollowedChange {
 
 /// The change to follow, of a comparison of runs with one metric only.
 /// @param looks comparisons of the same versions, with more and more pairs, of which the first significant
-/// one
-///              is taken: a p-value is then significant at a fraction of the level (Bonferroni)
+/// one is taken: a p-value is then significant at a fraction of the level (Bonferroni)
 /// @return nullopt if the metric did not change significantly
 [[nodiscard]] std::optional<FollowedChange> followed_change(const Comparison& comparison,
                                                             const std::string& metric, std::size_t looks = 1);
