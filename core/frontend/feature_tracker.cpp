@@ -120,11 +120,10 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
   if (options.detect) reject_outliers(options.dynamic_ids, false);
   if (config.recover_view) {
     const ScopedTimer timer(timings, Module::kFeatureTracking);
-    if (options.detect && breaks_down(options.dynamic_ids) &&
-        !track_again(frame, interval_s, options.dynamic_ids)) {
-      view_recovery.break_down(options.dynamic_ids);
-    }
+    const bool broken = options.detect && breaks_down(options.dynamic_ids) &&
+                        !track_again(frame, interval_s, options.dynamic_ids);
     view_recovery.process(frame.gray, current, options.dynamic_ids, tracks);
+    if (broken) view_recovery.break_down(options.dynamic_ids);
   }
   if (options.detect) {
     apply_mask();

@@ -50,14 +50,15 @@ class ViewRecovery {
   /// @param dynamic_ids of tracks that are no part of the static scene, sorted
   [[nodiscard]] std::optional<Pose> motion_since_last(const cv::Mat& gray, DynamicIds dynamic_ids) const;
 
-  /// No motion to the new image was found: the last one is a lost view, unless an earlier one is.
-  void break_down(DynamicIds dynamic_ids);
-
   /// @param gray    the new image, and its pyramid
   /// @param tracks  those of the last image that continue in it, sorted by id; if a lost view returns, its
   /// tracks are replaced by those that are found
   void process(const cv::Mat& gray, const ImagePyramid& pyramid, DynamicIds dynamic_ids,
                std::vector<Track>& tracks);
+
+  /// After `process`, if no motion to the new image was found: the last one is a lost view, unless an earlier
+  /// one is.
+  void break_down(DynamicIds dynamic_ids);
 
   /// Keeps a frame with all of its tracks, until the next one.
   void remember(const Frame& frame, std::span<const Track> tracks);
