@@ -187,20 +187,37 @@ double position_rmse(MatchView matches, Alignment kind) {
   return position_rmse(matches, align(matches, kind).S_w_v);
 }
 
+/// RMS distance of the true positions from their mean.
+double extent_m(MatchView matches) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const MatchedPose& match : matches) mean += match.gt.p;
+  mean /= static_cast<double>(matches.size());
+  double squared = 0.0;
+  for (const MatchedPose& match : matches) squared += (match.gt.p - mean).squaredNorm();
+  return std::sqrt(squared / static_cast<double>(matches.size()));
+}
+
+bool is_scaled(const Similarity& S_w_v) {
+  constexpr double kMinDeviation = 0.1;  // of the scale from 1
+  return S_w_v.scale > 0.0 && std::abs(std::log(S_w_v.scale)) >= kMinDeviation;
+}
+
 std::optional<ConventionFinding> mirrored(const Trajectory& gt, const Trajectory& est) {
   std::vector<MatchedPose> matches = strict_matches(gt, est);
   if (matches.size() < kMinMatches) return std::nullopt;
   const double read_m = position_rmse(matches, Alignment::kSe3);
   const double scaled_m = position_rmse(matches, Alignment::kSim3);
   for (MatchedPose& match : matches) match.est.p.z() *= -1.0;
-  const double mirrored_m = position_rmse(matches, Alignment::kSim3);
+  const Similarity fit = align(matches, Alignment::kSim3).S_w_v;
+  const double mirrored_m = position_rmse(matches, fit);
   if (read_m < kMinAte || mirrored_m * kMinImprovement > std::min(read_m, scaled_m)) return std::nullopt;
   return ConventionFinding{
       Convention::kMirrored,
       format_message(
-          "the estimate is mirrored: with one axis reversed, the ATE is %.4f instead of %.4f m; its "
+          "the estimate is mirrored: with one axis reversed%s, the ATE is %.4f instead of %.4f m; its "
           "coordinate system seems to be left-handed",
-          mirrored_m, read_m)};
+          is_scaled(fit) ? format_message(" and scaled by %.4g", fit.scale).c_str() : "", mirrored_m,
+          read_m)};
 }
 
 std::optional<ConventionFinding> time_offset(const Trajectory& gt, const Trajectory& est) {
@@ -271,18 +288,35 @@ std::optional<ConventionFinding> inverted_rotations(const Trajectory& gt, const 
           current.rpe_deg_per_s, corrected->rpe_deg_per_s)};
 }
 
-/// Rotation [deg] of an alignment by positions that their errors explain: their RMSE relative to the RMS
-/// distance from their mean.
+/// Rotation [deg] of an alignment by positions that their errors explain: their RMSE relative to the extent.
 double alignment_error_deg(MatchView matches, const Similarity& S_w_v) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const MatchedPose& match : matches) mean += match.gt.p;
-  mean /= static_cast<double>(matches.size());
-  double squared_error = 0.0, squared_distance = 0.0;
-  for (const MatchedPose& match : matches) {
-    squared_error += (match.gt.p - S_w_v * match.est.p).squaredNorm();
-    squared_distance += (match.gt.p - mean).squaredNorm();
+  return std::atan2(position_rmse(matches, S_w_v), extent_m(matches)) * 180.0 / std::numbers::pi;
+}
+
+/// A time offset that the positions do not tell, as those of a circle at constant speed: aligned, they are
+/// turned along it, and the orientations are off by that rotation and late.
+std::optional<ConventionFinding> offset_of_orientations(const Trajectory& gt, const Trajectory& est,
+                                                        const Errors& current) {
+  constexpr int kMaxSteps = 40;
+  constexpr double kStep = 0.025;  // [s]
+  if (current.ate_deg < kMinRotation) return std::nullopt;
+  double best_s = 0.0;
+  Errors best = current;
+  for (int step = -kMaxSteps; step <= kMaxSteps; ++step) {
+    Trajectory shifted = est;
+    for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, step * kStep);
+    const std::optional<Errors> errors = errors_of(gt, shifted);
+    if (!errors || errors->ate_deg >= best.ate_deg || errors->ate_m > current.ate_m + kMinAte) continue;
+    best_s = step * kStep;
+    best = *errors;
   }
-  return std::atan2(std::sqrt(squared_error), std::sqrt(squared_distance)) * 180.0 / std::numbers::pi;
+  if (best.ate_deg * kMinImprovement > current.ate_deg) return std::nullopt;
+  return ConventionFinding{
+      Convention::kTimeOffset,
+      format_message(
+          "time offset of about %.2f s: adding it to the stamps of the estimate (--offset) reduces the ATE "
+          "from %.2f to %.2f deg",
+          best_s, current.ate_deg, best.ate_deg)};
 }
 
 /// Another body frame results in rotation errors that are large and nearly constant.
@@ -389,23 +423,21 @@ std::optional<ConventionFinding> find_implausible_stamps(const Trajectory& path)
 }
 
 std::optional<ConventionFinding> find_wrong_scale(const Trajectory& gt, const Trajectory& whole) {
-  constexpr double kMinDeviation = 0.1;  // of the scale from 1
   const std::vector<MatchedPose> matches = strict_matches(gt, thinned(whole));
   if (matches.size() < kMinMatches) return std::nullopt;
   const double rigid_m = position_rmse(matches, Alignment::kSe3);
-  const double scaled_m = position_rmse(matches, Alignment::kSim3);
-  const double scale = align(matches, Alignment::kSim3).S_w_v.scale;
-  if (rigid_m < kMinAte || scaled_m * kMinImprovement > rigid_m || scale <= 0.0 ||
-      std::abs(std::log(scale)) < kMinDeviation) {
-    return std::nullopt;
-  }
+  const Similarity fit = align(matches, Alignment::kSim3).S_w_v;
+  const double scaled_m = position_rmse(matches, fit);
+  if (rigid_m < kMinAte || scaled_m * kMinImprovement > rigid_m || !is_scaled(fit)) return std::nullopt;
+  // An estimate that jumps or is noise fits best if it is shrunk to a point, which does not follow the path.
+  if (scaled_m * kMinImprovement > extent_m(matches)) return std::nullopt;
   return ConventionFinding{
       Convention::kScale,
       format_message(
           "the estimate is %.4g times as large as the ground truth: scaling it reduces the ATE from %.4f "
           "to %.4f m; check the factor of the depth images, or use --align sim3 for a system without "
           "scale",
-          1.0 / scale, rigid_m, scaled_m)};
+          1.0 / fit.scale, rigid_m, scaled_m)};
 }
 
 std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, const Trajectory& whole) {
@@ -416,13 +448,15 @@ std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, 
     if (finding) findings.push_back(std::move(*finding));
   };
   add(stamp_unit(gt, whole));
-  add(find_wrong_scale(gt, whole));
-  add(mirrored(gt, est));
+  const std::optional<ConventionFinding> mirror = mirrored(gt, est);  // tells the scale, too
+  if (!mirror) add(find_wrong_scale(gt, whole));
+  add(mirror);
   if (findings.empty()) add(time_offset(gt, whole));
   if (const std::optional<Errors> current = errors_of(gt, est)) {
     add(quaternion_order(gt, est, *current));
     add(inverted_poses(gt, est, *current));
     if (findings.empty()) add(inverted_rotations(gt, est, *current));
+    if (findings.empty()) add(offset_of_orientations(gt, est, *current));
     if (findings.empty()) add(body_frame(gt, est));
   }
   add(swapped_arguments(gt, whole));

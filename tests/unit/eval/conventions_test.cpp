@@ -182,11 +182,54 @@ TEST(Conventions, DetectAScaleAndDoNotCallItAnOffset) {
   }
 }
 
+TEST(Conventions, CallNoJumpAScale) {
+  Trajectory est = kEst;
+  for (std::size_t i = est.poses.size() / 2; i < est.poses.size(); ++i) est.poses[i].T_w_f.p.x() += 50.0;
+  EXPECT_TRUE(violations(kGt, est).empty());
+}
+
+TEST(Conventions, CallNoNoiseAScale) {
+  Trajectory gt = kGt;  // standing, up to 1 %
+  Trajectory est = kEst;
+  for (StampedPose& pose : gt.poses) pose.T_w_f.p *= 1e-3;
+  Random random(1);
+  for (StampedPose& pose : est.poses) pose.T_w_f.p = 1e-3 * pose.T_w_f.p + 0.02 * random.normal3();
+  EXPECT_TRUE(violations(gt, est).empty());
+}
+
+TEST(Conventions, DetectATimeOffsetOnACircleByTheOrientations) {
+  const auto circle = [](double shift_s) {
+    Trajectory path;
+    for (int i = 0; i < 1000; ++i) {
+      const double t = 0.03 * i + shift_s;
+      const double angle = 0.5 * t;  // 0.3 s are 8.6 deg
+      path.poses.push_back({from_seconds(0.03 * i),
+                            {exp_so3({0.0, 0.1 * std::sin(0.7 * t), 0.0}),
+                             {2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.0}}});
+    }
+    return path;
+  };
+  const std::vector<ConventionFinding> found = find_convention_violations(circle(0.0), circle(0.3));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].convention, Convention::kTimeOffset);
+  EXPECT_NE(found[0].message.find("0.30 s"), std::string::npos) << found[0].message;
+}
+
 TEST(Conventions, DetectAMirroredEstimate) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) pose.T_w_f.p.y() *= -1.0;
   const std::vector<Convention> found = violations(kGt, est);
   EXPECT_NE(std::find(found.begin(), found.end(), Convention::kMirrored), found.end());
+}
+
+TEST(Conventions, TellTheScaleOfAMirroredEstimate) {
+  Trajectory est = kEst;  // centimeters and y to the right, as of Unreal
+  for (StampedPose& pose : est.poses)
+    pose.T_w_f.p = 100.0 * pose.T_w_f.p.cwiseProduct(Eigen::Vector3d(1, -1, 1));
+  const std::vector<ConventionFinding> found = find_convention_violations(kGt, est);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].convention, Convention::kMirrored);
+  EXPECT_NE(found[0].message.find("scaled by 0.01,"), std::string::npos) << found[0].message;
 }
 
 TEST(TimeOffset, IsFoundFarAway) {
