@@ -26,11 +26,13 @@ std::vector<StampedFile> stamped_images(const std::filesystem::path& folder) {
   std::vector<StampedFile> images;
   for (const std::filesystem::path& file : visible_files(folder)) {
     const std::optional<Timestamp> t = eval::parse_stamp(file.stem().string());
-    if (t && file.extension() == ".png") images.push_back({.t = *t, .file = file});
+    if (t && is_image(file)) images.push_back({.t = *t, .file = file});
   }
   std::ranges::sort(images, {}, &StampedFile::t);
   if (images.empty())
-    throw InputError(folder.string(), "contains no image SECONDS.png; extract the archive again");
+    throw InputError(
+        folder.string(),
+        "contains no image with a name of SECONDS.png or SECONDS.jpg; extract the archive again");
   return images;
 }
 

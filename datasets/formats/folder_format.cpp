@@ -3,7 +3,6 @@
 /// numbers of frames, or times, with which imu.txt, imu.csv and groundtruth.txt are read.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -26,14 +25,6 @@
 
 namespace stillpoint::datasets {
 namespace {
-
-bool is_image(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".tif" ||
-         extension == ".tiff" || extension == ".exr";
-}
 
 /// What the names of image files tell about time.
 enum class NameKind { kStamp, kNumber, kOther };

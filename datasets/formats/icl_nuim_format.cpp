@@ -51,8 +51,8 @@ void add_frame_pairs(SequenceContent& content, FaultLog& faults) {
     if (!t) throw row.error("the index " + std::string(row.fields[color]) + " is no frame number");
     if (!content.info.frame_times.empty()) row.require_increasing(content.info.frame_times.back(), *t);
     content.info.frame_times.push_back(*t);
-    content.frame_files.push_back(
-        {.color = folder / row.fields[color + 1], .depth = folder / row.fields[3 - color]});
+    content.frame_files.push_back({.color = listed_image(folder, row.fields[color + 1]),
+                                   .depth = listed_image(folder, row.fields[3 - color])});
   });
   if (content.frame_files.empty()) throw InputError(file.string(), "contains no images; copy the file again");
 }

@@ -50,7 +50,35 @@ bool is_regular(const std::vector<std::int64_t>& numbers, std::int64_t step) {
                              [&](std::int64_t number) { return (number - numbers.front()) % step == 0; });
 }
 
+/// The image of a row `t path`, or of a path with blanks, which the row has in several fields.
+std::filesystem::path image_of(const eval::TextRow& row, const std::filesystem::path& root) {
+  const std::string_view first = row.text(1);
+  std::filesystem::path image = listed_image(root, first);
+  if (row.fields.size() == 2 || std::filesystem::exists(image)) return image;
+  const std::string_view last = row.fields.back();
+  const std::string_view all(first.data(),
+                             static_cast<std::size_t>(last.data() - first.data()) + last.size());
+  const std::filesystem::path with_blanks = listed_image(root, all);
+  return std::filesystem::exists(with_blanks) ? with_blanks : image;
+}
+
 }  // namespace
+
+bool is_image(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".tif" ||
+         extension == ".tiff" || extension == ".exr";
+}
+
+std::filesystem::path listed_image(const std::filesystem::path& root, std::string_view name) {
+  std::filesystem::path file = root / name;
+  if (name.find('\\') == std::string_view::npos || std::filesystem::exists(file)) return file;
+  std::string with_slashes(name);
+  std::ranges::replace(with_slashes, '\\', '/');
+  return root / with_slashes;
+}
 
 std::vector<Timestamp> times_of_frames(std::vector<std::int64_t> numbers, const std::filesystem::path& folder,
                                        NumberMeaning meaning) {
@@ -91,7 +119,7 @@ std::vector<StampedFile> read_image_list(const std::filesystem::path& list, cons
   const std::string name = list.string();
   std::vector<StampedFile> images;
   eval::for_each_row(text, name, faults, [&](const eval::TextRow& row) {
-    const StampedFile image{.t = row.time(0, unit), .file = root / row.text(1)};
+    const StampedFile image{.t = row.time(0, unit), .file = image_of(row, root)};
     if (!images.empty()) row.require_increasing(images.back().t, image.t);
     images.push_back(image);
   });

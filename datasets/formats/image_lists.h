@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
@@ -20,6 +21,9 @@ namespace stillpoint::datasets {
 /// Without hidden files, whose names begin with ".": macOS adds "._5.png" to "5.png", which is no image.
 /// @throws std::filesystem::filesystem_error if the folder cannot be read
 [[nodiscard]] std::vector<std::filesystem::path> visible_files(const std::filesystem::path& folder);
+
+/// Whether the name of a file ends as that of an image.
+[[nodiscard]] bool is_image(const std::filesystem::path& file);
 
 /// What the numbers in the names of images are: unknown, or frame numbers by the definition of the layout.
 enum class NumberMeaning { kUnknown, kFrame };
@@ -38,7 +42,11 @@ struct StampedFile {
   std::filesystem::path file;
 };
 
-/// Reads rows `t path`, paths relative to `root`. The images need not exist.
+/// The file that a list names, relative to `root`. Lists of Windows have backslashes.
+[[nodiscard]] std::filesystem::path listed_image(const std::filesystem::path& root, std::string_view name);
+
+/// Reads rows `t path`, paths relative to `root`. The images need not exist. Paths of existing images may
+/// contain blanks.
 /// @param list text file; `unit` is the unit of its stamps
 /// @return strictly increasing in time, not empty
 /// @throws InputError if the list is missing, empty or unsorted

@@ -131,8 +131,8 @@ PairedImages read_associations(const std::filesystem::path& file, FaultLog& faul
     if (std::abs(depth_offset_s) >= kImageAssociation.max_difference_s) return;
     if (!images.times.empty()) row.require_increasing(images.times.back(), t);
     images.times.push_back(t);
-    images.files.push_back(FrameFiles{.color = file.parent_path() / row.text(color + 1),
-                                      .depth = file.parent_path() / row.text(depth + 1),
+    images.files.push_back(FrameFiles{.color = listed_image(file.parent_path(), row.text(color + 1)),
+                                      .depth = listed_image(file.parent_path(), row.text(depth + 1)),
                                       .depth_offset_s = depth_offset_s});
   });
   if (images.color_images == 0) throw InputError(name, "lists no images; is the sequence complete?");

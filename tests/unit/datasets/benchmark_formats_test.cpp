@@ -183,5 +183,18 @@ TEST(CidSimsFormat, NamesAreTimesAndGravityTellsTheOrderOfTheColumns) {
   EXPECT_EQ(stream->info().ground_truth.trajectory.poses.size(), 2U);
 }
 
+TEST(CidSimsFormat, ColorMayBeJpeg) {
+  const TemporaryFolder folder;
+  for (const char* stamp : {"10.000000", "10.033000"}) {
+    write_image(folder.path() / "color" / (std::string(stamp) + ".png"), gray(5));
+    std::filesystem::rename(folder.path() / "color" / (std::string(stamp) + ".png"),
+                            folder.path() / "color" / (std::string(stamp) + ".jpg"));
+    write_image(folder.path() / "depth" / (std::string(stamp) + ".png"), deep(2000));
+  }
+  folder.write("pose.txt", "10.0 0 0 0 0 0 0 1\n10.1 1 0 0 0 0 0 1\n");
+  folder.write("rig.toml", "camera = { width = 8, height = 6, fx = 5, fy = 5, cx = 4, cy = 3 }\n");
+  EXPECT_EQ(open_sequence(folder.path())->info().frame_times.size(), 2U);
+}
+
 }  // namespace
 }  // namespace stillpoint::datasets

@@ -19,6 +19,30 @@ TEST(ImageList, PathsAreRelativeToTheRoot) {
   EXPECT_EQ(list[0].file, folder.path() / "rgb/a.png");
 }
 
+TEST(ImageList, PathsOfExistingImagesMayContainBlanks) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "my rgb");
+  folder.write("my rgb/a.png", "");
+  folder.write("b.png", "");
+  FaultLog strict;
+  const auto list = read_image_list(folder.write("rgb.txt", "1.5 my rgb/a.png\n1.6 b.png 0.01\n"),
+                                    folder.path(), eval::TimeUnit::kSeconds, strict);
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].file, folder.path() / "my rgb/a.png");
+  EXPECT_EQ(list[1].file, folder.path() / "b.png");
+}
+
+TEST(ImageList, BackslashesSeparateFolders) {
+  const TemporaryFolder folder;
+  folder.write("kept\\b.png", "");  // some programs extract archives of Windows to such names
+  FaultLog strict;
+  const auto list = read_image_list(folder.write("rgb.txt", "1.5 rgb\\a.png\n1.6 kept\\b.png\n"),
+                                    folder.path(), eval::TimeUnit::kSeconds, strict);
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].file, folder.path() / "rgb/a.png");
+  EXPECT_EQ(list[1].file, folder.path() / "kept\\b.png");
+}
+
 TEST(ImageList, EmptyAndUnsortedListsAreErrors) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) {
