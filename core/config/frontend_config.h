@@ -67,8 +67,8 @@ struct FrontendConfig {
   TrackerKind tracker = TrackerKind::kPatch;  ///< as accurate as KLT windows, in a tenth of the time
   int window_px = 15;                         ///< faster than the published 21, without loss of tracks
   int pyramid_levels = 2;
-  /// Without prediction: disabled, visual odometry, or a gap in the IMU data. Not a key: maxLevel = 3 of
-  /// VINS.
+  /// Without that prediction: disabled, visual odometry, a gap in the IMU data, or before the inertial start.
+  /// Not a key: maxLevel = 3 of VINS.
   int unpredicted_pyramid_levels = 4;
   double min_correlation = 0.6;  ///< low: outliers are rejected by the motion model
   OutlierModel outlier_model = OutlierModel::kRigid;

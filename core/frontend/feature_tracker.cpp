@@ -143,7 +143,7 @@ void FeatureTracker::State::track_features(const Frame& frame, const MotionPrior
 }
 
 void FeatureTracker::State::match_features(TrackerPrediction kind) {
-  const bool predicts = kind != TrackerPrediction::kNone;
+  const bool predicts = kind != TrackerPrediction::kNone && kind == config.prediction;
   const int levels = predicts ? config.pyramid_levels : config.unpredicted_pyramid_levels;
   pixels = pixels_of(tracks, std::move(pixels));
   forward = track_points(

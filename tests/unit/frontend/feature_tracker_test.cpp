@@ -141,6 +141,17 @@ TEST(FeatureTracker, WithoutAValidPriorUsesMorePyramidLevels) {
   EXPECT_GT(count_tracked(config, motion, MotionPrior{}), 70);
 }
 
+/// Before the inertial start, or while inertial data is wrong.
+TEST(FeatureTracker, WithoutTheTranslationOfAFullPriorUsesMorePyramidLevels) {
+  FrontendConfig config = one_level(TrackerPrediction::kFull);
+  config.unpredicted_pyramid_levels = 5;
+  const Pose motion{Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.0}};  // 25 px
+  const MotionPrior rotation{.has_rotation = true};
+  EXPECT_GT(count_tracked(config, motion, rotation), 70);
+  config.prediction = TrackerPrediction::kRotation;
+  EXPECT_LT(count_tracked(config, motion, rotation), 20);
+}
+
 TEST(FeatureTracker, BlankImagesHaveNoFeatures) {
   FeatureTracker tracker({}, test_camera());
   Frame frame = test_plane().frame_at(Pose{}, 0);
