@@ -384,6 +384,7 @@ void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   previous_ = newest_;
   newest_covariance_.reset();
   calibration_found_ = false;
+  calibration_.window_restarted();
   monitor_.window_restarted();
 }
 

@@ -35,6 +35,9 @@ class Calibration {
   /// measured depth, by which the window can also start anew without an IMU.
   [[nodiscard]] bool awaits_alignment() const;
 
+  /// The start of a window is doubted again, see `compare_with_rig`, and its prior is what was known before.
+  void window_restarted();
+
   /// One of the time offset alone comes before that of the rotation.
   /// @return whether it contradicts the rig: windows start with it from now on
   [[nodiscard]] bool align(const RotationAlignment& alignment);
@@ -46,13 +49,14 @@ class Calibration {
   ///
   /// The inverse depth scale k differs from 1 by d, that of its value and of the Gauss-Newton step that is
   /// left: while k is constant, the step of the score test. With its variance C, s_a the scale error of the
-  /// accelerometer, and t the time since the first comparison,
+  /// accelerometer, and t the time since the first comparison in the window,
   ///
   ///   d^2 / (C (1 + (t_n / t)^2) + s_a^2)
   ///
   /// is compared with 6.63, the 99 % quantile of one degree of freedom: s_a and the term with t_n = 1.5 s,
-  /// which doubts the inertial noise of the start, contain what a true scale seems to be off by. Below 4 the
-  /// scale is that of the rig again: the prior of the window holds for any.
+  /// which doubts the inertial noise of the start, contain what a true scale seems to be off by. Below 4
+  /// (without that term) the scale is that of the rig again: the prior of the window holds for any. It is
+  /// that of the rig as well where C is more than a quarter of its prior variance.
   /// The lens likewise, with what a calibration leaves in place of s_a, 13.28 (99 % of four degrees of
   /// freedom) in place of 6.63, and from the start. Its center and the extrinsics are compared after the
   /// rotations were aligned, since before it is not known which value is wrong; extrinsics that were found to
@@ -85,8 +89,8 @@ class Calibration {
     return starts_with_rig() && config_.depth.estimate_scale;
   }
   void compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window);
+  void compare_depth_scale(double step, double variance, Window& window);
   void compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance, Window& window);
-  [[nodiscard]] double depth_scale_contradiction(double difference, double variance, Timestamp now);
   [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
   /// Whether there is an alignment that contradicts the rig.
   [[nodiscard]] bool is_aligned_otherwise() const;
@@ -100,6 +104,8 @@ class Calibration {
   std::optional<Pose> extrinsics_found_;                 ///< contradict the rig
   std::optional<DepthScaleEstimate> depth_scale_found_;  ///< same
   std::optional<LensEstimate> lens_found_;               ///< same
+  double depth_scale_prior_;                             ///< standard deviation in the prior of the window
+  double depth_scale_confirmed_;  ///< smallest one with which the depth scale of the rig was confirmed
 };
 
 /// Whether no step of depth scale and lens exceeds a quarter of its standard deviation.

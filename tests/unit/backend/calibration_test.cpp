@@ -207,6 +207,38 @@ TEST(Calibration, ADepthScaleThatComesCloseToTheRigIsThatOfTheRigAgain) {
   EXPECT_EQ(compared.window.depth_scale, 1.0);
 }
 
+/// 3 s of a clipped accelerometer on a robot: a difference of 2.8 standard deviations of 0.069, by a prior of
+/// 0.1 (accel_saturated:amount=12 on market, 0.44 m).
+TEST(Calibration, ADepthScaleThatInertialDataHardlyObservesIsThatOfTheRig) {
+  for (const double sigma : {0.049, 0.051}) {
+    Compared compared;
+    compared.compare(0.0, 0.1, 0.0);
+    compared.compare(0.2, sigma, 20.0);
+    EXPECT_EQ(compared.window.agrees_with_rig.depth_scale, sigma > 0.05);
+  }
+}
+
+TEST(Calibration, DoubtsTheDepthScaleOfTheFirstSecondAfterARestart) {
+  Compared compared;
+  compared.compare(0.0, 0.1, 0.0);
+  compared.calibration.window_restarted();
+  compared.compare(0.1, 0.01, 20.0);
+  EXPECT_TRUE(compared.window.agrees_with_rig.depth_scale);
+  compared.compare(0.1, 0.01, 25.0);
+  EXPECT_FALSE(compared.window.agrees_with_rig.depth_scale);
+}
+
+/// The scale of a camera is a constant (imu_rate:amount=30 on V1_03 after a restart: 0.36 m).
+TEST(Calibration, AWindowStartsWithTheDepthScaleAsItWasConfirmedBefore) {
+  Compared compared;
+  compared.compare(0.0, 0.1, 0.0);
+  compared.compare(0.005, 0.01, 5.0);
+  compared.calibration.window_restarted();
+  compared.compare(0.3, 0.03, 10.0);
+  compared.compare(0.3, 0.03, 20.0);
+  EXPECT_TRUE(compared.window.agrees_with_rig.depth_scale);
+}
+
 TEST(Calibration, StartsWithAnAlignmentThatContradictsTheRig) {
   BackendConfig config = estimating_config();
   config.initializer.align_rotations = true;
