@@ -78,6 +78,16 @@ const std::vector<ImuSample>& ImuBuffer::samples_up_to(Timestamp begin, Timestam
   return interval_;
 }
 
+bool ImuBuffer::has_gap(Timestamp begin, Timestamp end) const {
+  auto next = std::upper_bound(samples_.begin(), samples_.end(), begin,
+                               [](Timestamp t, const ImuSample& sample) { return t < sample.t; });
+  if (next == samples_.begin()) return next != samples_.end();
+  for (; next != samples_.end() && std::prev(next)->t < end; ++next) {
+    if (seconds_between(std::prev(next)->t, next->t) > max_gap_s_) return true;
+  }
+  return false;
+}
+
 std::optional<ImuSample> ImuBuffer::mean_around(Timestamp t, double half_width_s) const {
   if (samples_.empty() || samples_.front().t > t || samples_.back().t < t) return std::nullopt;
   const double covered =

@@ -95,8 +95,12 @@ class InertialCheck {
   /// Vision did not locate the frame at `t` on the IMU clock: the poses before it and those of the next 0.5
   /// s, in which the window settles, are not compared.
   void interrupt(Timestamp t);
-  /// Samples were missing at `t` on the IMU clock.
-  void missing(Timestamp t) { missing_at_ = t; }
+  /// Samples were missing at `t` on the IMU clock, or its stamps jumped: those that follow count as
+  /// inconsistent until they agree with vision.
+  void missing(Timestamp t) {
+    missing_at_ = t;
+    contradict();
+  }
   /// The data is wrong for another reason: it counts as inconsistent until it agrees with vision.
   void contradict();
   /// Whether the data stays inconsistent although it agrees.

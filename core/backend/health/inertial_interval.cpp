@@ -56,15 +56,12 @@ bool SampleInspector::has_plateau(std::span<const ImuSample> samples) {
   return found;
 }
 
-StatusReason SampleInspector::inspect(std::span<const ImuSample> samples, double max_gap_s) {
+StatusReason SampleInspector::inspect(std::span<const ImuSample> samples, bool has_gap) {
   for (const ImuSample& sample : samples) {
     largest_gyro_ = std::max(largest_gyro_, sample.gyro_b.cwiseAbs().maxCoeff());
     largest_accel_ = std::max(largest_accel_, sample.accel_b.cwiseAbs().maxCoeff());
   }
-  if (samples.size() < 2) return StatusReason::kImuGap;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    if (seconds_between(samples[i - 1].t, samples[i].t) > max_gap_s) return StatusReason::kImuGap;
-  }
+  if (has_gap || samples.size() < 2) return StatusReason::kImuGap;
   const auto gyro = [](const ImuSample& sample) -> const Eigen::Vector3d& { return sample.gyro_b; };
   const auto accel = [](const ImuSample& sample) -> const Eigen::Vector3d& { return sample.accel_b; };
   const bool saturated = has_plateau(samples) || is_saturated(samples, largest_gyro_, gyro) ||

@@ -17,12 +17,13 @@ namespace stillpoint {
 /// Recognizes defects that samples show by themselves.
 class SampleInspector {
  public:
-  /// A gap is longer than `max_gap_s`. Saturation: in four successive samples, one axis of a sensor has
+  /// Saturation: in four successive samples, one axis of a sensor has
   /// exactly the largest magnitude of the run, while another axis varies; or in 30 ms and eight samples
   /// exactly the same value.
   /// @param samples of the next interval, sorted by time; fewer than two are a gap
+  /// @param has_gap see `ImuBuffer::has_gap`
   /// @return kNone, kImuGap or kImuSaturated
-  [[nodiscard]] StatusReason inspect(std::span<const ImuSample> samples, double max_gap_s);
+  [[nodiscard]] StatusReason inspect(std::span<const ImuSample> samples, bool has_gap);
 
  private:
   /// Successive samples with the same value of one axis.

@@ -62,8 +62,8 @@ void SensorMonitor::begin_frame(const TrackedFrame& frame, bool bridged) {
   innovations_ = {};
 }
 
-bool SensorMonitor::inspect(std::span<const ImuSample> samples, Timestamp end) {
-  evidence_.imu_defect = inspector_.inspect(samples, imu_.max_gap_s);
+bool SensorMonitor::inspect(std::span<const ImuSample> samples, bool has_gap, Timestamp end) {
+  evidence_.imu_defect = inspector_.inspect(samples, has_gap);
   if (evidence_.imu_defect == StatusReason::kImuGap) inertial_.missing(end);
   if (evidence_.imu_defect == StatusReason::kNone && !inertial_.is_consistent()) {
     evidence_.imu_defect = StatusReason::kImuInconsistent;

@@ -50,9 +50,10 @@ class SensorMonitor {
   [[nodiscard]] bool awaits_map() const { return tracking_.awaits_map(); }
 
   /// Inspects the samples up to a frame, before they enter the window.
+  /// @param has_gap see `ImuBuffer::has_gap`
   /// @param end of the interval, on the IMU clock
   /// @return whether they are reliable
-  [[nodiscard]] bool inspect(std::span<const ImuSample> samples, Timestamp end);
+  [[nodiscard]] bool inspect(std::span<const ImuSample> samples, bool has_gap, Timestamp end);
 
   /// Noise, see InertialNoise, with which samples enter the window: so large for unreliable ones that vision
   /// determines the motion.

@@ -227,5 +227,20 @@ TEST(InertialCheck, AcceptsDataAgainAfterSixFramesOfAgreementUnlessItIsHeld) {
   EXPECT_TRUE(update(1));
 }
 
+/// A gap in the stamps may be a jump of the clock.
+TEST(InertialCheck, DoubtsDataAfterAGapUntilItAgreesWithVision) {
+  ImuBuffer imu = samples_of(0.0, 1.0);
+  InertialCheck check;
+  double t = 0.0;
+  const auto update = [&](int frames) {
+    for (int i = 0; i < frames; ++i) check.update(pose_of(t += kFrame_s, 0.0, 1.0), {}, kGravity_w, imu);
+    return check.is_consistent();
+  };
+  EXPECT_TRUE(update(8));
+  check.missing(at(t));
+  EXPECT_FALSE(update(5));
+  EXPECT_TRUE(update(1));
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -76,6 +76,17 @@ TEST(ImuBuffer, CountsAGapOnlyOnce) {
   EXPECT_EQ(buffer.health().gaps, 2);
 }
 
+/// An interval between two images is shorter than a gap that it lies in.
+TEST(ImuBuffer, HasAGapInEachIntervalThatItTouches) {
+  const ImuBuffer buffer = filled({0, 10, 75, 80, 130});  // 65 ms; 50 ms are none
+  EXPECT_FALSE(buffer.has_gap(at_ms(0), at_ms(10)));
+  EXPECT_TRUE(buffer.has_gap(at_ms(5), at_ms(38)));
+  EXPECT_TRUE(buffer.has_gap(at_ms(38), at_ms(71)));
+  EXPECT_TRUE(buffer.has_gap(at_ms(71), at_ms(104)));
+  EXPECT_FALSE(buffer.has_gap(at_ms(75), at_ms(130)));
+  EXPECT_FALSE(buffer.has_gap(at_ms(104), at_ms(137)));
+}
+
 TEST(ImuBuffer, ExtrapolatesTheNewestSampleToTheEnd) {
   ImuBuffer buffer = filled({0, 10, 20});
   const std::vector<ImuSample> cut = buffer.samples_up_to(at_ms(5), at_ms(60));
