@@ -153,6 +153,7 @@ void TrackingMonitor::begin_segment() {
 
 bool TrackingMonitor::update(const FrameEvidence& evidence, const Window& window) {
   const bool diverged = evidence.failure != StatusReason::kNone && status_ != kInitializing;
+  const bool reckoned = status_ == kDeadReckoning;
   const Decision decision = decide(evidence);
   status_ = decision.status;
   reason_ = decision.reason;
@@ -164,11 +165,13 @@ bool TrackingMonitor::update(const FrameEvidence& evidence, const Window& window
   }
   if (status_ == kTracking) map_.update(window, evidence.covariance);
   if (diverged) map_.discard_newest();
-  const bool too_uncertain = reason_ == StatusReason::kUncertain && !awaits_map_;
-  awaits_map_ = awaits_map_ || diverged || too_uncertain;
+  // Frames without features end the landmarks of the window: after them only the map can locate the camera.
+  const bool reckoning_ends =
+      status_ == kLost && !diverged && !awaits_map_ && (reckoned || reason_ == StatusReason::kUncertain);
+  awaits_map_ = awaits_map_ || diverged || reckoning_ends;
   const bool new_segment = patience_is_over(evidence);
   if (new_segment) begin_segment();
-  return new_segment || too_uncertain;
+  return new_segment || reckoning_ends;
 }
 
 }  // namespace stillpoint

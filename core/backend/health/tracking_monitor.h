@@ -99,7 +99,7 @@ class TrackingMonitor {
   void relocated() { relocated_ = true; }
 
   /// Decides about a frame that entered the window. A window of trusted landmarks updates the map.
-  /// @return whether the window must be cleared: the estimate is too uncertain, or a new segment begins
+  /// @return whether the window must be cleared: dead reckoning ends without vision, or a new segment begins
   [[nodiscard]] bool update(const FrameEvidence& evidence, const Window& window);
 
   [[nodiscard]] OdometryStatus status() const { return status_; }

@@ -118,6 +118,19 @@ TEST(TrackingMonitor, IsLostWithoutVisionAndInertialData) {
   run.expect(kTracking, StatusReason::kNone);
 }
 
+/// The landmarks of a window that was dead reckoned have ended: it would stay lost, though the view is back.
+TEST(TrackingMonitor, IsLostUntilTheMapLocatesItIfInertialDataFailsWhileDeadReckoning) {
+  MonitoredRun run = tracking_run();
+  EXPECT_FALSE(run.update(blank_frame()));
+  run.expect(kDeadReckoning, StatusReason::kFewFeatures);
+  FrameEvidence evidence = blank_frame();
+  evidence.imu_defect = StatusReason::kImuSaturated;
+  EXPECT_TRUE(run.update(evidence));
+  run.expect(kLost, StatusReason::kImuSaturated);
+  EXPECT_TRUE(run.monitor.awaits_map());
+  EXPECT_FALSE(run.update(evidence));
+}
+
 TEST(TrackingMonitor, BridgesARepeatedImageForThreeFramesOfThirtyHertz) {
   MonitoredRun run = tracking_run();
   FrameEvidence evidence{.bridged = true, .has_start = true};
