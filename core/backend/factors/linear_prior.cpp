@@ -14,10 +14,24 @@
 namespace stillpoint {
 namespace {
 
-/// Of a prior: 15 states per frame, and the global ones.
-constexpr int kMaxSize = 15 * (kMaxWindowSize + 1) + 14;
+/// Of a prior.
+constexpr int kMaxSize = kFrameColumns * (kMaxWindowSize + 1) + kGlobalColumns;
 
 }  // namespace
+
+void displace_block(BlockKind kind, const double* d, double* x) {
+  if (kind == BlockKind::kGravity) {
+    Eigen::Map<Eigen::Vector3d> g(x);
+    g = rotate_gravity(g, Eigen::Vector2d(d));
+    return;
+  }
+  const bool is_pose = global_size(kind) == 7;
+  const int summed = is_pose ? 3 : global_size(kind);
+  Eigen::Map<BlockVector>(x, summed) += Eigen::Map<const BlockVector>(d, summed);
+  if (!is_pose) return;
+  Eigen::Map<Eigen::Quaterniond> q(x + 3);
+  q = (q * exp_so3(Eigen::Vector3d(d + 3))).normalized();
+}
 
 BlockVector block_difference(BlockKind kind, const double* x, const BlockVector& origin) {
   const int size = global_size(kind);

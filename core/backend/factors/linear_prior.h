@@ -2,6 +2,7 @@
 /// Linear prior on the window's states, as left by marginalization: a linearized residual.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -17,6 +18,10 @@ namespace stillpoint {
 /// inverse depth scale, that of kLens the lens correction, see reprojection_rows.h.
 enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kDepthScale, kLens };
 
+/// The global states, in the order of their columns in the equations of a window.
+inline constexpr std::array kGlobalKinds = {BlockKind::kExtrinsics, BlockKind::kGravity,
+                                            BlockKind::kTimeOffset, BlockKind::kDepthScale, BlockKind::kLens};
+
 /// Number of doubles in a parameter block, and of its tangent space.
 [[nodiscard]] constexpr int global_size(BlockKind kind) {
   constexpr int kSizes[] = {7, 9, 7, 1, 3, 1, 4};
@@ -26,6 +31,10 @@ enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kD
   constexpr int kSizes[] = {6, 9, 6, 1, 2, 1, 4};
   return kSizes[static_cast<std::size_t>(kind)];
 }
+
+/// Columns of pose, velocity and biases of one frame, and of all global states.
+inline constexpr int kFrameColumns = 15;
+inline constexpr int kGlobalColumns = 14;
 
 /// Values of one block, or its tangent vector: at most nine, stored inline.
 using BlockVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
@@ -54,8 +63,12 @@ struct LinearPrior {
   [[nodiscard]] bool empty() const { return blocks.empty(); }
 };
 
-/// x [-] origin, in the tangent space at `origin`: for poses (p - p0, Log(q0^-1 q)), the inverse of
-/// PoseManifold::Plus; for gravity `gravity_difference`; for other blocks x - x0.
+/// x <- x [+] d with a tangent vector d: for poses (p + dp, q Exp(dtheta)); for gravity `rotate_gravity`; for
+/// other blocks x + d.
+void displace_block(BlockKind kind, const double* d, double* x);
+
+/// x [-] origin, in the tangent space at `origin`, the inverse of [+]: for poses (p - p0, Log(q0^-1 q)); for
+/// gravity `gravity_difference`; for other blocks x - x0.
 [[nodiscard]] BlockVector block_difference(BlockKind kind, const double* x, const BlockVector& origin);
 
 /// Adds independent random steps to the components of a global state: with x' = x + w, w ~ N(0, S), the

@@ -25,9 +25,7 @@ constexpr int kStateGroup = 1;
 /// All residuals of a window.
 ResidualBuilder build_residuals(const Window& window, const BackendConfig& config, double focal_px) {
   ResidualBuilder builder(window, config, focal_px);
-  builder.add_prior();
-  builder.add_calibration();
-  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
+  builder.add_states();
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     if (is_usable(window.landmarks[i])) builder.add_landmark(static_cast<int>(i));
   }
@@ -35,9 +33,9 @@ ResidualBuilder build_residuals(const Window& window, const BackendConfig& confi
 }
 
 /// Blocks, residuals and Ceres problem of a window; in one object because they refer to each other.
-class WindowProblem {
+class CeresProblem {
  public:
-  WindowProblem(const Window& window, const BackendConfig& config, double focal_px)
+  CeresProblem(const Window& window, const BackendConfig& config, double focal_px)
       : blocks_(window), builder_(build_residuals(window, config, focal_px)), problem_(problem_options()) {
     add_states(window);
     for (const Residual& r : builder_.residuals()) {
@@ -67,20 +65,18 @@ class WindowProblem {
 
  private:
   void add_states(const Window& window) {
-    for (std::size_t i = 0; i < window.frames.size(); ++i) {
-      add_state(blocks_.pose(i), 7, &manifold_);
-      if (window.inertial) add_state(blocks_.speed_bias(i), 9, nullptr);
+    for (int frame = 0; frame <= window.newest(); ++frame) {
+      add_state({BlockKind::kPose, frame});
+      if (window.inertial) add_state({BlockKind::kSpeedBias, frame});
     }
-    add_state(blocks_.extrinsics(), 7, &manifold_);
-    add_state(blocks_.time_offset(), 1, nullptr);
-    add_state(blocks_.gravity(), 3, &gravity_manifold_);
-    add_state(blocks_.inverse_depth_scale(), 1, nullptr);
-    add_state(blocks_.lens(), 4, nullptr);
+    for (const BlockKind kind : kGlobalKinds) add_state({kind});
   }
 
-  void add_state(double* block, int size, ceres::Manifold* manifold) {
-    problem_.AddParameterBlock(block, size, manifold);
-    ordering_->AddElementToGroup(block, kStateGroup);
+  void add_state(BlockRef block) {
+    ceres::Manifold* manifold = global_size(block.kind) == 7 ? &pose_manifold_ : nullptr;
+    if (block.kind == BlockKind::kGravity) manifold = &gravity_manifold_;
+    problem_.AddParameterBlock(blocks_.at(block), global_size(block.kind), manifold);
+    ordering_->AddElementToGroup(blocks_.at(block), kStateGroup);
   }
 
   void order_landmarks(const Window& window, const BackendConfig& config) {
@@ -96,14 +92,12 @@ class WindowProblem {
 
   void set_global_constancy(const Window& window, const BackendConfig& config) {
     const VariableGlobals variable = solved_globals(window, config);
-    if (!variable.extrinsics) problem_.SetParameterBlockConstant(blocks_.extrinsics());
-    if (!variable.time_offset) problem_.SetParameterBlockConstant(blocks_.time_offset());
-    if (!variable.gravity) problem_.SetParameterBlockConstant(blocks_.gravity());
-    if (!variable.lens) problem_.SetParameterBlockConstant(blocks_.lens());
-    if (!variable.depth_scale) problem_.SetParameterBlockConstant(blocks_.inverse_depth_scale());
+    for (const BlockKind kind : kGlobalKinds) {
+      if (!variable.has(kind)) problem_.SetParameterBlockConstant(blocks_.at({kind}));
+    }
   }
 
-  PoseManifold manifold_;
+  PoseManifold pose_manifold_;
   GravityManifold gravity_manifold_;
   ParameterBlocks blocks_;
   ResidualBuilder builder_;
@@ -116,7 +110,7 @@ class WindowProblem {
 }  // namespace
 
 SolveReport CeresSolver::minimize(Window& window, const BackendConfig& config, double focal_px) {
-  WindowProblem problem(window, config, focal_px);
+  CeresProblem problem(window, config, focal_px);
   const ceres::Solver::Summary summary = problem.solve(config);
   SolveReport report{.iterations = static_cast<int>(summary.iterations.size()),
                      .initial_cost = summary.initial_cost,

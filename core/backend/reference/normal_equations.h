@@ -14,7 +14,7 @@ namespace stillpoint {
 class StateLayout {
  public:
   explicit StateLayout(int frames) : frames_(frames) {}
-  [[nodiscard]] int size() const { return 15 * frames_ + 14; }
+  [[nodiscard]] int size() const { return kFrameColumns * frames_ + kGlobalColumns; }
   [[nodiscard]] int column(BlockRef block) const {
     switch (block.kind) {
       case BlockKind::kPose:

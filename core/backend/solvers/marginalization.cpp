@@ -38,7 +38,7 @@ void FrameMarginalizer::split(int frame, const LinearPrior& prior) {
   int marginalized = 0;
   for (const PriorBlock& block : prior.blocks)
     marginalized += block.frame == frame ? local_size(block.kind) : 0;
-  STILLPOINT_CHECK(rows <= kMaxRows && marginalized <= kMaxColumns);
+  STILLPOINT_CHECK(rows <= kMaxRows && marginalized <= kFrameColumns);
   marginalized_columns_.resize(rows, marginalized);
   remaining_columns_.resize(rows, prior.jacobian.cols() - marginalized + 1);
   result_.blocks.clear();

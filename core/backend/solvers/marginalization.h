@@ -20,12 +20,10 @@ class FrameMarginalizer {
   [[nodiscard]] LinearPrior remove(int frame, LinearPrior prior);
 
  private:
-  static constexpr int kMaxColumns = 15;  ///< pose, velocity and biases
-  static constexpr int kGlobalColumns = 12;
-  static constexpr int kMaxRows = kMaxColumns * (kMaxWindowSize + 1) + kGlobalColumns;
+  static constexpr int kMaxRows = kFrameColumns * (kMaxWindowSize + 1) + kGlobalColumns;
   /// Columns of the states of one frame; fixed capacity, so the factorization does not allocate.
   using FrameColumns =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxColumns>;
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kFrameColumns>;
 
   void split(int frame, const LinearPrior& prior);
 

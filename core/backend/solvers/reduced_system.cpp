@@ -22,8 +22,12 @@ std::array<BlockRef, 4> imu_blocks(int frame) {
 
 std::array<const double*, 6> imu_parameters(int frame, const ParameterBlocks& blocks) {
   const std::array<BlockRef, 4> refs = imu_blocks(frame);
-  return {blocks.at(refs[0]), blocks.at(refs[1]), blocks.at(refs[2]),
-          blocks.at(refs[3]), blocks.gravity(),   blocks.time_offset()};
+  return {blocks.at(refs[0]),
+          blocks.at(refs[1]),
+          blocks.at(refs[2]),
+          blocks.at(refs[3]),
+          blocks.at({BlockKind::kGravity}),
+          blocks.at({BlockKind::kTimeOffset})};
 }
 
 /// The residual and its Jacobians as written by the factor; `jacobian` stacks the tangent columns of states.

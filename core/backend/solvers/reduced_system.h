@@ -3,7 +3,7 @@
 /// velocity.
 #pragma once
 
-#include <initializer_list>
+#include <array>
 #include <vector>
 
 #include "core/backend/factors/reusable_matrix.h"
@@ -13,55 +13,44 @@
 namespace stillpoint {
 
 /// Column order of the variable states: velocities and biases, newest first (IMU factors couple only
-/// neighbors, so these cause little fill-in); then poses, oldest first; then extrinsics, gravity, time
-/// offset, depth scale and lens, if variable.
+/// neighbors, so these cause little fill-in); then poses, oldest first; then the variable global states.
 class ReducedLayout {
  public:
   ReducedLayout() = default;
   ReducedLayout(int frames, bool inertial, VariableGlobals variable)
-      : frames_(frames), inertial_(inertial), variable_(variable) {}
+      : frames_(frames), inertial_(inertial), variable_(variable) {
+    int end = first_pose() + 6 * frames;
+    global_columns_.fill(-1);
+    for (const BlockKind kind : kGlobalKinds) {
+      if (!variable.has(kind)) continue;
+      global_columns_[static_cast<std::size_t>(kind)] = end;
+      end += local_size(kind);
+    }
+    size_ = (end + kTile - 1) / kTile * kTile;
+    padding_ = size_ - end;
+  }
 
   /// -1 for a constant block.
   [[nodiscard]] int column(BlockRef block) const {
-    switch (block.kind) {
-      case BlockKind::kPose:
-        return first_pose() + 6 * block.frame;
-      case BlockKind::kSpeedBias:
-        return inertial_ ? 9 * (frames_ - 1 - block.frame) : -1;
-      case BlockKind::kExtrinsics:
-        return variable_.extrinsics ? first_global() : -1;
-      case BlockKind::kGravity:
-        return variable_.gravity ? first_gravity() : -1;
-      case BlockKind::kDepthScale:
-        return variable_.depth_scale ? first_depth_scale() : -1;
-      case BlockKind::kLens:
-        return variable_.lens ? first_lens() : -1;
-      case BlockKind::kTimeOffset:
-        break;
-    }
-    return variable_.time_offset ? first_time_offset() : -1;
+    if (block.kind == BlockKind::kPose) return first_pose() + 6 * block.frame;
+    if (block.kind == BlockKind::kSpeedBias) return inertial_ ? 9 * (frames_ - 1 - block.frame) : -1;
+    return global_columns_[static_cast<std::size_t>(block.kind)];
   }
   [[nodiscard]] int first_pose() const { return inertial_ ? 9 * frames_ : 0; }
   /// Padded to a multiple of kTile.
-  [[nodiscard]] int size() const { return first_global() + (globals() + kTile - 1) / kTile * kTile; }
+  [[nodiscard]] int size() const { return size_; }
   /// Number of rows at the end that belong to no state.
-  [[nodiscard]] int padding() const { return size() - first_global() - globals(); }
+  [[nodiscard]] int padding() const { return padding_; }
   [[nodiscard]] int frames() const { return frames_; }
   [[nodiscard]] const VariableGlobals& variable_globals() const { return variable_; }
 
  private:
-  [[nodiscard]] int globals() const { return first_lens() + (variable_.lens ? 4 : 0) - first_global(); }
-  [[nodiscard]] int first_global() const { return first_pose() + 6 * frames_; }
-  [[nodiscard]] int first_gravity() const { return first_global() + (variable_.extrinsics ? 6 : 0); }
-  [[nodiscard]] int first_time_offset() const { return first_gravity() + (variable_.gravity ? 2 : 0); }
-  [[nodiscard]] int first_depth_scale() const {
-    return first_time_offset() + (variable_.time_offset ? 1 : 0);
-  }
-  [[nodiscard]] int first_lens() const { return first_depth_scale() + (variable_.depth_scale ? 1 : 0); }
-
   int frames_ = 0;
   bool inertial_ = false;
   VariableGlobals variable_;
+  std::array<int, 7> global_columns_{};  ///< by BlockKind
+  int size_ = 0;
+  int padding_ = 0;
 };
 
 /// H dx = -g with H = J^T J, g = J^T r; only the lower triangle of H is stored. Unconstrained columns are

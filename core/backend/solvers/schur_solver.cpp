@@ -6,11 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/backend/factors/gravity_direction.h"
 #include "core/backend/solvers/marginalization.h"
 #include "core/backend/solvers/reduced_system.h"
 #include "core/backend/solvers/window_solver.h"
-#include "core/geometry/so3.h"
 
 namespace stillpoint {
 namespace {
@@ -26,12 +24,6 @@ constexpr double kGoodModel = 0.75;            // gain ratio above which the rad
 constexpr double kMinCurvature = 1e-6;
 constexpr double kFirstDamping = 1e-8;
 constexpr double kLastDamping = 1.0;
-
-void add_to_pose(const ReusableVector& step, int column, double* x) {
-  Eigen::Map<Eigen::Vector3d>{x} += step.segment<3>(column);
-  Eigen::Map<Eigen::Quaterniond> q(x + 3);
-  q = (q * exp_so3(step.segment<3>(column + 3))).normalized();
-}
 
 }  // namespace
 
@@ -136,28 +128,15 @@ void SchurSolver::compute_dogleg_step(double radius) {
 
 void SchurSolver::apply_step() {
   candidate_ = blocks_;
+  const auto displace = [this](BlockRef block) {
+    const int column = layout_.column(block);
+    if (column >= 0) displace_block(block.kind, step_.states.data() + column, candidate_.at(block));
+  };
   for (int frame = 0; frame < layout_.frames(); ++frame) {
-    const auto index = static_cast<std::size_t>(frame);
-    add_to_pose(step_.states, layout_.column({BlockKind::kPose, frame}), candidate_.pose(index));
-    const int column = layout_.column({BlockKind::kSpeedBias, frame});
-    if (column >= 0) {
-      Eigen::Map<Eigen::Matrix<double, 9, 1>>{candidate_.speed_bias(index)} +=
-          step_.states.segment<9>(column);
-    }
+    displace({BlockKind::kPose, frame});
+    displace({BlockKind::kSpeedBias, frame});
   }
-  const int extrinsics = layout_.column({BlockKind::kExtrinsics});
-  if (extrinsics >= 0) add_to_pose(step_.states, extrinsics, candidate_.extrinsics());
-  const int time_offset = layout_.column({BlockKind::kTimeOffset});
-  if (time_offset >= 0) *candidate_.time_offset() += step_.states[time_offset];
-  const int depth_scale = layout_.column({BlockKind::kDepthScale});
-  if (depth_scale >= 0) *candidate_.inverse_depth_scale() += step_.states[depth_scale];
-  const int lens = layout_.column({BlockKind::kLens});
-  if (lens >= 0) Eigen::Map<Eigen::Vector4d>{candidate_.lens()} += step_.states.segment<4>(lens);
-  const int gravity = layout_.column({BlockKind::kGravity});
-  if (gravity >= 0) {
-    Eigen::Map<Eigen::Vector3d> g(candidate_.gravity());
-    g = rotate_gravity(g, step_.states.segment<2>(gravity));
-  }
+  for (const BlockKind kind : kGlobalKinds) displace({kind});
   visual_.apply_step(step_.landmarks, candidate_);
 }
 

@@ -264,19 +264,19 @@ Pose pose_at(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Ve
 
 /// Computes what the relative poses of `blocks` share.
 CameraOnBody VisualTerms::place_cameras(const ParameterBlocks& blocks) {
-  CameraOnBody camera(pose_at(blocks.extrinsics()));
+  CameraOnBody camera(pose_at(blocks.at({BlockKind::kExtrinsics})));
   cameras_.clear();
   for (int frame = 0; frame < frames_; ++frame) {
-    cameras_.emplace_back(pose_at(blocks.pose(static_cast<std::size_t>(frame))), camera);
+    cameras_.emplace_back(pose_at(blocks.at({BlockKind::kPose, frame})), camera);
   }
   return camera;
 }
 
 /// Computes the relative poses of all frame pairs that share landmarks at the current states.
 void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
-  time_offset_ = *blocks.time_offset();
-  inverse_depth_scale_ = *blocks.inverse_depth_scale();
-  lens_ = Eigen::Vector4d(blocks.lens());
+  time_offset_ = *blocks.at({BlockKind::kTimeOffset});
+  inverse_depth_scale_ = *blocks.at({BlockKind::kDepthScale});
+  lens_ = Eigen::Vector4d(blocks.at({BlockKind::kLens}));
   const CameraOnBody camera = place_cameras(blocks);
   for (std::size_t host = 0; host < cameras_.size(); ++host) {
     for (std::size_t frame = host + 1; frame < cameras_.size(); ++frame) {

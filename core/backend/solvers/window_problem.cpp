@@ -81,17 +81,18 @@ Pose unpack_pose(const double* values) {
 
 void ParameterBlocks::assign(const Window& window) {
   frames_ = window.frames.size();
-  values_.resize(16 * frames_ + 16 + window.landmarks.size());
-  for (std::size_t i = 0; i < window.frames.size(); ++i) {
-    const NavState& state = window.frames[i].state;
-    pack_pose(state.T_w_b, pose(i));
-    Eigen::Map<Eigen::Matrix<double, 9, 1>>{speed_bias(i)} << state.v_w, state.gyro_bias, state.accel_bias;
+  values_.resize(first_landmark() + window.landmarks.size());
+  for (int frame = 0; frame <= window.newest(); ++frame) {
+    const NavState& state = window.frames[static_cast<std::size_t>(frame)].state;
+    pack_pose(state.T_w_b, at({BlockKind::kPose, frame}));
+    Eigen::Map<Eigen::Matrix<double, 9, 1>>{at({BlockKind::kSpeedBias, frame})} << state.v_w, state.gyro_bias,
+        state.accel_bias;
   }
-  pack_pose(window.T_b_c, extrinsics());
-  *time_offset() = window.time_offset_s;
-  *inverse_depth_scale() = 1.0 / window.depth_scale;
-  Eigen::Map<Eigen::Vector4d>{lens()} = window.lens;
-  Eigen::Map<Eigen::Vector3d>{gravity()} = window.gravity_w;
+  pack_pose(window.T_b_c, at({BlockKind::kExtrinsics}));
+  *at({BlockKind::kTimeOffset}) = window.time_offset_s;
+  *at({BlockKind::kDepthScale}) = 1.0 / window.depth_scale;
+  Eigen::Map<Eigen::Vector4d>{at({BlockKind::kLens})} = window.lens;
+  Eigen::Map<Eigen::Vector3d>{at({BlockKind::kGravity})} = window.gravity_w;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     *inverse_depth(i) = window.landmarks[i].inverse_depth;
   }
@@ -137,19 +138,19 @@ Linearization linearize_at(const ParameterBlocks& now, const Window& window, con
 }
 
 void unpack(const ParameterBlocks& blocks, Window& window) {
-  for (std::size_t i = 0; i < window.frames.size(); ++i) {
-    NavState& state = window.frames[i].state;
-    state.T_w_b = unpack_pose(blocks.pose(i));
-    const double* values = blocks.speed_bias(i);
+  for (int frame = 0; frame <= window.newest(); ++frame) {
+    NavState& state = window.frames[static_cast<std::size_t>(frame)].state;
+    state.T_w_b = unpack_pose(blocks.at({BlockKind::kPose, frame}));
+    const double* values = blocks.at({BlockKind::kSpeedBias, frame});
     state.v_w = Eigen::Vector3d(values);
     state.gyro_bias = Eigen::Vector3d(values + 3);
     state.accel_bias = Eigen::Vector3d(values + 6);
   }
-  window.T_b_c = unpack_pose(blocks.extrinsics());
-  window.time_offset_s = *blocks.time_offset();
-  window.depth_scale = 1.0 / *blocks.inverse_depth_scale();
-  set_lens(Eigen::Vector4d(blocks.lens()), window);
-  window.gravity_w = Eigen::Vector3d(blocks.gravity());
+  window.T_b_c = unpack_pose(blocks.at({BlockKind::kExtrinsics}));
+  window.time_offset_s = *blocks.at({BlockKind::kTimeOffset});
+  window.depth_scale = 1.0 / *blocks.at({BlockKind::kDepthScale});
+  set_lens(Eigen::Vector4d(blocks.at({BlockKind::kLens})), window);
+  window.gravity_w = Eigen::Vector3d(blocks.at({BlockKind::kGravity}));
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);
   }
@@ -167,6 +168,32 @@ bool has_constant_depth(const Landmark& landmark, const BackendConfig& config) {
 
 bool uses_depth(const Observation& observation, const BackendConfig& config) {
   return config.depth.usage == DepthUsage::kWeighted && observation.depth > 0.0;
+}
+
+bool VariableGlobals::has(BlockKind kind) const {
+  switch (kind) {
+    case BlockKind::kExtrinsics:
+      return extrinsics;
+    case BlockKind::kTimeOffset:
+      return time_offset;
+    case BlockKind::kGravity:
+      return gravity;
+    case BlockKind::kDepthScale:
+      return depth_scale;
+    case BlockKind::kLens:
+      return lens;
+    case BlockKind::kPose:
+    case BlockKind::kSpeedBias:
+      break;
+  }
+  return false;
+}
+
+std::vector<BlockRef> with_globals(std::vector<BlockRef> blocks, VariableGlobals variable) {
+  for (const BlockKind kind : kGlobalKinds) {
+    if (variable.has(kind)) blocks.push_back({kind});
+  }
+  return blocks;
 }
 
 VariableGlobals variable_globals(const Window& window, const BackendConfig& config) {
@@ -215,13 +242,7 @@ std::vector<BlockRef> candidate_blocks(const Window& window, const BackendConfig
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
   if (!window.inertial) return blocks;
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
-  const VariableGlobals globals = marginalized_globals(window, config);
-  if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
-  if (globals.gravity) blocks.push_back({BlockKind::kGravity});
-  if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
-  if (globals.depth_scale) blocks.push_back({BlockKind::kDepthScale});
-  if (globals.lens) blocks.push_back({BlockKind::kLens});
-  return blocks;
+  return with_globals(std::move(blocks), marginalized_globals(window, config));
 }
 
 PriorBlock prior_block_after_slide(BlockRef block, const ParameterBlocks& point) {

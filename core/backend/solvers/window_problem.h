@@ -72,32 +72,16 @@ class ParameterBlocks {
   /// Copies the states of a window; allocates only if it is larger than all windows before.
   void assign(const Window& window);
 
-  [[nodiscard]] double* pose(std::size_t frame) { return &values_[7 * frame]; }
-  [[nodiscard]] double* speed_bias(std::size_t frame) { return &values_[7 * frames_ + 9 * frame]; }
-  [[nodiscard]] double* extrinsics() { return &values_[16 * frames_]; }
-  [[nodiscard]] double* time_offset() { return &values_[16 * frames_ + 7]; }
-  [[nodiscard]] double* gravity() { return &values_[16 * frames_ + 8]; }
-  [[nodiscard]] double* inverse_depth_scale() { return &values_[16 * frames_ + 11]; }
-  [[nodiscard]] double* lens() { return &values_[16 * frames_ + 12]; }
-  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 16 + landmark]; }
   [[nodiscard]] double* at(BlockRef block) { return &values_[offset(block)]; }
-
-  [[nodiscard]] const double* pose(std::size_t frame) const { return &values_[7 * frame]; }
-  [[nodiscard]] const double* speed_bias(std::size_t frame) const {
-    return &values_[7 * frames_ + 9 * frame];
-  }
-  [[nodiscard]] const double* extrinsics() const { return &values_[16 * frames_]; }
-  [[nodiscard]] const double* time_offset() const { return &values_[16 * frames_ + 7]; }
-  [[nodiscard]] const double* gravity() const { return &values_[16 * frames_ + 8]; }
-  [[nodiscard]] const double* inverse_depth_scale() const { return &values_[16 * frames_ + 11]; }
-  [[nodiscard]] const double* lens() const { return &values_[16 * frames_ + 12]; }
-  [[nodiscard]] const double* inverse_depth(std::size_t landmark) const {
-    return &values_[16 * frames_ + 16 + landmark];
-  }
+  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[first_landmark() + landmark]; }
   [[nodiscard]] const double* at(BlockRef block) const { return &values_[offset(block)]; }
+  [[nodiscard]] const double* inverse_depth(std::size_t landmark) const {
+    return &values_[first_landmark() + landmark];
+  }
 
  private:
   [[nodiscard]] std::size_t offset(BlockRef block) const;
+  [[nodiscard]] std::size_t first_landmark() const { return 16 * frames_ + 16; }
 
   std::size_t frames_ = 0;
   std::vector<double> values_;
@@ -145,7 +129,11 @@ struct VariableGlobals {
   bool gravity = false;
   bool depth_scale = false;
   bool lens = false;
+
+  [[nodiscard]] bool has(BlockKind kind) const;
 };
+/// Appends the variable global states.
+[[nodiscard]] std::vector<BlockRef> with_globals(std::vector<BlockRef> blocks, VariableGlobals variable);
 /// In the covariance.
 [[nodiscard]] VariableGlobals variable_globals(const Window& window, const BackendConfig& config);
 /// In the solve: without the calibration that agrees with the rig.

@@ -31,15 +31,9 @@ std::vector<BlockRef> newest_blocks(const Window& window, const BackendConfig& c
                                     std::vector<BlockRef> recycled) {
   std::vector<BlockRef> blocks = std::move(recycled);
   blocks.clear();
-  const VariableGlobals globals = variable_globals(window, config);
   blocks.push_back({BlockKind::kPose, window.newest()});
   if (window.inertial) blocks.push_back({BlockKind::kSpeedBias, window.newest()});
-  if (globals.gravity) blocks.push_back({BlockKind::kGravity});
-  if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
-  if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
-  if (globals.depth_scale) blocks.push_back({BlockKind::kDepthScale});
-  if (globals.lens) blocks.push_back({BlockKind::kLens});
-  return blocks;
+  return with_globals(std::move(blocks), variable_globals(window, config));
 }
 
 StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestMatrix& covariance) {

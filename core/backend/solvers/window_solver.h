@@ -90,8 +90,9 @@ class WindowSolver {
 
 // The blocks whose covariance is reported with each frame, and their place in WindowCovariance.
 
-/// At most 29 rows: pose, velocity and biases, gravity, extrinsics, time offset, depth scale, lens.
-using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 29, 29>;
+inline constexpr int kNewestColumns = kFrameColumns + kGlobalColumns;
+using NewestMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kNewestColumns, kNewestColumns>;
 
 /// Pose of the newest frame, its velocity and biases if there are any, and the variable global states.
 /// @param recycled storage for the result; its content is ignored
@@ -102,8 +103,7 @@ using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 [[nodiscard]] StateCovariance state_covariance(std::span<const BlockRef> blocks,
                                                const NewestMatrix& covariance);
 
-/// At most as many rows as NewestMatrix.
-using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 29, 1>;
+using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kNewestColumns, 1>;
 
 /// @param blocks as in `state_covariance`
 /// @param step Gauss-Newton step of the blocks, all of them variable

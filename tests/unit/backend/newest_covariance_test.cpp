@@ -63,15 +63,10 @@ class FullInformation {
       const auto index = static_cast<std::size_t>(column - layout_.size());
       return has_constant_depth(window_.landmarks[index], config_);
     }
-    const auto within = [&](BlockKind kind) {
+    return std::ranges::any_of(kGlobalKinds, [&](BlockKind kind) {
       const int begin = layout_.column({kind});
-      return column >= begin && column < begin + local_size(kind);
-    };
-    return (within(BlockKind::kExtrinsics) && !variable.extrinsics) ||
-           (within(BlockKind::kTimeOffset) && !variable.time_offset) ||
-           (within(BlockKind::kGravity) && !variable.gravity) ||
-           (within(BlockKind::kDepthScale) && !variable.depth_scale) ||
-           (within(BlockKind::kLens) && !variable.lens);
+      return column >= begin && column < begin + local_size(kind) && !variable.has(kind);
+    });
   }
 
   void add(const Residual& residual) {

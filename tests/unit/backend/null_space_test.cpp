@@ -71,16 +71,16 @@ Eigen::MatrixXd world_displacements(const Window& window, const ParameterBlocks&
                                     const ReducedLayout& layout) {
   Eigen::MatrixXd N = Eigen::MatrixXd::Zero(layout.size(), 6);
   for (int frame = 0; frame <= window.newest(); ++frame) {
-    const double* pose = point.pose(static_cast<std::size_t>(frame));
+    const double* pose = point.at({BlockKind::kPose, frame});
     const int column = layout.column({BlockKind::kPose, frame});
     N.block<3, 3>(column, 0).setIdentity();
     N.block<3, 3>(column, 3) = -skew(Eigen::Vector3d(pose));
     N.block<3, 3>(column + 3, 3) = Eigen::Quaterniond(pose + 3).toRotationMatrix().transpose();
     N.block<3, 3>(layout.column({BlockKind::kSpeedBias, frame}), 3) =
-        -skew(Eigen::Vector3d(point.speed_bias(static_cast<std::size_t>(frame))));
+        -skew(Eigen::Vector3d(point.at({BlockKind::kSpeedBias, frame})));
   }
   N.block<2, 3>(layout.column({BlockKind::kGravity}), 3) =
-      gravity_basis(Eigen::Vector3d(point.gravity())).transpose();
+      gravity_basis(Eigen::Vector3d(point.at({BlockKind::kGravity}))).transpose();
   return N;
 }
 

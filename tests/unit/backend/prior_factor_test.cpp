@@ -2,6 +2,7 @@
 #include "core/backend/reference/state_factors.h"
 
 #include <array>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,22 @@ TEST(PriorFactor, ReturnsR0AtTheLinearizationPoint) {
   const Eigen::VectorXd residual =
       residual_at(PriorFactor(prior), {{1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0}, {0.01}});
   EXPECT_LT((residual - prior.residual).norm(), 1e-14);
+}
+
+TEST(LinearPrior, TheDifferenceOfADisplacedBlockIsItsDisplacement) {
+  Eigen::VectorXd pose(7);
+  pose << 1.0, 2.0, 3.0, 0.5, 0.5, -0.5, 0.5;
+  const std::array<std::pair<BlockKind, Eigen::VectorXd>, 4> blocks = {
+      {{BlockKind::kPose, pose},
+       {BlockKind::kSpeedBias, Eigen::VectorXd::LinSpaced(9, -1.0, 1.0)},
+       {BlockKind::kGravity, Eigen::Vector3d(0.3, -0.2, -9.8)},
+       {BlockKind::kLens, Eigen::Vector4d(0.01, 0.05, 0.0, 0.002)}}};
+  for (const auto& [kind, origin] : blocks) {
+    const Eigen::VectorXd d = Eigen::VectorXd::LinSpaced(local_size(kind), -0.02, 0.03);
+    Eigen::VectorXd x = origin;
+    displace_block(kind, d.data(), x.data());
+    EXPECT_LT((block_difference(kind, x.data(), origin) - d).norm(), 1e-14) << global_size(kind);
+  }
 }
 
 TEST(LinearPrior, ARandomStepAddsItsVariance) {

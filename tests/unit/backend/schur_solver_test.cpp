@@ -127,11 +127,8 @@ struct ColumnPairs {
 
 ColumnPairs matching_columns(const Window& window, const ReducedLayout& reduced) {
   const StateLayout reference(static_cast<int>(window.frames.size()));
-  std::vector<BlockRef> blocks = {{BlockKind::kExtrinsics},
-                                  {BlockKind::kTimeOffset},
-                                  {BlockKind::kGravity},
-                                  {BlockKind::kDepthScale},
-                                  {BlockKind::kLens}};
+  std::vector<BlockRef> blocks;
+  for (const BlockKind kind : kGlobalKinds) blocks.push_back({kind});
   for (int frame = 0; frame <= window.newest(); ++frame) {
     blocks.push_back({BlockKind::kPose, frame});
     blocks.push_back({BlockKind::kSpeedBias, frame});
