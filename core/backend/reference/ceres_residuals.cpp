@@ -103,8 +103,10 @@ void ResidualBuilder::add_prior() {
   if (!window_.prior.empty()) residuals_.push_back(prior_residual(window_.prior));
 }
 
-void ResidualBuilder::add_calibration() {
+void ResidualBuilder::add_states() {
+  add_prior();
   if (!window_.calibration.empty()) residuals_.push_back(prior_residual(window_.calibration));
+  for (int frame = 1; frame <= window_.newest(); ++frame) add_imu(frame);
 }
 
 }  // namespace stillpoint

@@ -24,7 +24,7 @@ struct Residual {
 /// Addresses of the parameter blocks of a residual, in the order of its cost function.
 template <class Blocks>  // ParameterBlocks or const ParameterBlocks
 [[nodiscard]] auto parameter_addresses(const Residual& residual, Blocks& blocks) {
-  std::vector<decltype(blocks.extrinsics())> addresses;
+  std::vector<decltype(blocks.at({}))> addresses;
   for (const BlockRef state : residual.states) addresses.push_back(blocks.at(state));
   if (residual.landmark >= 0)
     addresses.push_back(blocks.inverse_depth(static_cast<std::size_t>(residual.landmark)));
@@ -36,14 +36,14 @@ class ResidualBuilder {
  public:
   ResidualBuilder(const Window& window, const BackendConfig& config, double focal_px);
 
+  /// All residuals of the states alone: priors, and IMU factors between all frames.
+  void add_states();
   /// All residuals of one usable landmark: host depth, and one per further observation.
   void add_landmark(int index);
   /// IMU factor between frame - 1 and frame, if there is one.
   void add_imu(int frame);
   /// Marginalization prior.
   void add_prior();
-  /// Prior on the calibration from the calibrated values.
-  void add_calibration();
 
   /// Residuals added so far; they refer to the builder and the window.
   [[nodiscard]] const std::vector<Residual>& residuals() const { return residuals_; }

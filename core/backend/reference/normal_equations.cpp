@@ -80,9 +80,7 @@ NormalEquations linearize_all(const Window& window, const BackendConfig& config,
                               const ParameterBlocks& blocks) {
   NormalEquations equations(static_cast<int>(window.frames.size()));
   ResidualBuilder builder(window, config, focal_px);
-  builder.add_prior();
-  builder.add_calibration();
-  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
+  builder.add_states();
   equations.add(builder.residuals(), blocks, false);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     if (!is_usable(window.landmarks[i])) continue;

@@ -24,9 +24,7 @@ class FullInformation {
     const Eigen::Index size = layout_.size() + static_cast<Eigen::Index>(window.landmarks.size());
     H_ = Eigen::MatrixXd::Zero(size, size);
     ResidualBuilder builder(window, config, kSimulatedFocal_px);
-    builder.add_prior();
-    builder.add_calibration();
-    for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
+    builder.add_states();
     for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
       if (is_usable(window.landmarks[i])) builder.add_landmark(static_cast<int>(i));
     }
