@@ -8,6 +8,7 @@
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
+#include "core/backend/solvers/observation_model.h"
 #include "core/backend/solvers/window_problem.h"
 
 namespace stillpoint {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/backend/factors/relative_pose_linearization.h"
+#include "core/backend/solvers/observation_model.h"
 #include "core/backend/solvers/reduced_system.h"
 #include "core/backend/solvers/window_problem.h"
 
