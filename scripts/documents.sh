@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Checks that the documents lead nowhere wrong: every path of the paper map (core/README.md), every link and every path in code
-# marks exists, no document is longer than its limit, and each diagram was made from its present source. With PROGRAM also:
-# every configuration key exists (but in the changelog and in measurements, which are those of their builds).
+# marks exists, no document is longer than its limit, each diagram was made from its present source, and comments name headers
+# that exist. With PROGRAM also: every configuration key exists (but in the changelog and in measurements, which are those of their builds).
 #   scripts/documents.sh [ROOT [PROGRAM]]
 # A path is a folder, a file, or a pair of files named without their endings; in code marks it begins with a folder of the root.
 set -euo pipefail
@@ -59,6 +59,17 @@ limit() {
 }
 limit README.md reports/measured/*.md 120
 limit ARCHITECTURE.md 250
+
+# A header that a comment names is a source, or, of a library, included there.
+sources() { git ls-files -c -o --exclude-standard -- '*.h' '*.cpp' 2>/dev/null | grep . || find . -name '*.h' -o -name '*.cpp'; }
+while read -r source header; do
+  grep -q "^#include.*$header" "$source" || complain "$source: a comment names $header, which does not exist"
+done < <(sources | xargs -d '\n' grep -sHE '//.*[a-z]\.h\b' |
+  awk -v names="$(sources | sed 's|.*/||')" 'BEGIN {split(names, list); for (i in list) exists[list[i]]}
+    {source = $0; sub(/:.*/, "", source); sub(/.*\/\//, "")
+     while (match($0, /[a-z0-9_]+\.h/)) {
+       name = substr($0, RSTART, RLENGTH); $0 = substr($0, RSTART + RLENGTH)
+       if ($0 !~ /^[a-z]/ && !(name in exists)) print source, name}}' | sort -u)
 
 for source in core/diagrams/*.dot; do
   [[ -f "$source" ]] || continue

@@ -158,7 +158,7 @@ struct FailureLimits {
   int max_unusable_solves = 3;  ///< in succession
 };
 
-/// Innovations of the features, see innovation.h.
+/// Innovations of the features, see `reprojection_nis`.
 struct InnovationLimits {
   int min_landmarks = 8;
   double unexpected = 5.0;  ///< normalized innovation squared: the largest one on four rendered sequences is

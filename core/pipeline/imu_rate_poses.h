@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// State at IMU rate: propagates the newest estimated state with all samples received so far. Paper Sec. II.
-///
-/// Camera pose at each IMU sample, as known when the sample arrives (causal). Paper Sec. II: "the pose is
-/// propagated at IMU rate".
+/// State at IMU rate, propagated from the newest estimate with all samples received so far, and the camera
+/// pose at each sample, as known when the sample arrives (causal). Paper Sec. II: "the propagation of the IMU
+/// is responsible for an IMU-rate pose estimation result".
 #pragma once
 
 #include <optional>
@@ -11,7 +10,6 @@
 
 #include "core/backend/state_prediction.h"
 #include "core/config/odometry_config.h"
-#include "core/pipeline/imu_rate_poses.h"
 #include "core/types/odometry_update.h"
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"

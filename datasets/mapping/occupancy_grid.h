@@ -11,7 +11,7 @@
 
 namespace stillpoint::datasets {
 
-/// An image of a plane, whose lower left corner is `origin_m` in the frame of the map.
+/// An image of a plane, whose lower left corner is (`origin_x_m`, `origin_y_m`) in the frame of the map.
 struct OccupancyGrid {
   int columns = 0;
   int rows = 0;

@@ -88,7 +88,7 @@ int fitting_zoom(const BlockPlaces& places) {
   return static_cast<int>(std::clamp(std::round(-std::log2(kTilePixels * pixel)), 0.0, kMostZoom));
 }
 
-/// The tiles of a range beside each other; empty if one is missing, which `problem_of_tile` then tells.
+/// The tiles of a range beside each other; empty if one is missing, which `problem` then tells.
 struct Mosaic {
   cv::Mat image;
   std::string problem;

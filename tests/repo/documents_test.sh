@@ -42,6 +42,13 @@ expect_fault documents.sh "names core/imu/gone.h" "a path in code marks that doe
 with_document reports/measured/long.md "$(printf 'line\n%.0s' {1..121})"
 expect_fault documents.sh "more than 120 lines" "a page that is too long"
 
+with_document core/imu/queue.h '/// See buffer.h and core/imu/buffer.h.
+#include "lib/vector.h"
+int x;  // as in vector.h'
+expect_clean documents.sh "headers that exist"
+put core/imu/queue.h '/// See (gone.h).'
+expect_fault documents.sh "core/imu/queue.h: a comment names gone.h" "a header that does not exist"
+
 with_document README.md 'set `backend.solver` and `imu.walk`, see imu.txt'
 put program 'echo "| \`backend.solver\` |"'
 chmod +x "$scratch/program"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Normal equations over the states of a window (landmarks eliminated), and the terms of IMU, priors and zero
-/// velocity.
+/// Normal equations over the states of a window (landmarks eliminated), and the terms of IMU and priors.
 #pragma once
 
 #include <array>

@@ -15,7 +15,7 @@ struct InertialAlignment {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< [rad/s]
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();  ///< in the visual world, of configured norm [m/s^2]
   Eigen::Matrix3d gravity_covariance =
-      Eigen::Matrix3d::Zero();  ///< of gravity_w / |gravity_w|, in the tangent plane; see frozen_world.h
+      Eigen::Matrix3d::Zero();  ///< of gravity_w / |gravity_w|, in the tangent plane
   Eigen::Vector3d first_velocity_w = Eigen::Vector3d::Zero();  ///< of frame 0 [m/s]
   double scale = 1.0;                                          ///< meters per unit of the visual world
   double unconstrained_gravity = 0.0;  ///< norm of gravity without the norm constraint [m/s^2]

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How well vision determines the newest camera pose, and how well it agrees with a prediction: normalized
-/// innovation squared (NIS): consistency of a prediction and a measurement with their covariances,
-/// without ground truth. Bar-Shalom et al., "Estimation with Applications to Tracking and Navigation", 2001,
-/// Sec. 5.4. With an innovation v of n dimensions and its covariance S, v^T S^-1 v / n is 1 in the mean.
+/// How well vision determines the newest camera pose, and how well it agrees with a prediction, by the
+/// normalized innovation squared (NIS): with an innovation v of n dimensions and its covariance S,
+/// v^T S^-1 v / n is 1 in the mean if both covariances are true. Bar-Shalom et al., "Estimation with
+/// Applications to Tracking and Navigation", 2001, Sec. 5.4.
 #pragma once
 
 #include <optional>
