@@ -75,8 +75,7 @@ struct DepthConfig {
 
   // Not keys: no config changes them.
   double agreement_px =
-      10.0;                 ///< largest reprojection error of a depth accepted from one view; published code
-  double scale_walk = 0.0;  ///< random walk of the depth scale [1/sqrt(s)]
+      10.0;  ///< largest reprojection error of a depth accepted from one view; published code
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, DepthConfig>

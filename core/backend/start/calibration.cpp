@@ -193,7 +193,9 @@ void Calibration::compare_with_rig(const RigStep& step, const StateCovariance& c
 }
 
 CalibrationAtBound Calibration::limit(Window& window) const {
-  return limit_calibration(rig_, config_, window);
+  return {.time_offset = clamp_around(rig_.time_offset_s, config_.time_offset_bound_s, window.time_offset_s),
+          .extrinsics = limit_extrinsics(rig_.T_b_c, config_, window.T_b_c),
+          .depth_scale = clamp_around(1.0, config_.depth.scale_bound, window.depth_scale)};
 }
 
 bool has_converged(const AgreesWithRig& constant, const RigStep& step, const StateCovariance& covariance) {
@@ -220,14 +222,6 @@ void add_calibration_walk(const BackendConfig& config, const AgreesWithRig& agre
   const double rad = root * config.extrinsics_walk_rad;
   add_random_step(BlockKind::kTimeOffset, std::array{root * config.time_offset_walk}, prior);
   if (!agrees.extrinsics) add_random_step(BlockKind::kExtrinsics, std::array{m, m, m, rad, rad, rad}, prior);
-  if (!agrees.depth_scale)
-    add_random_step(BlockKind::kDepthScale, std::array{root * config.depth.scale_walk}, prior);
-}
-
-CalibrationAtBound limit_calibration(const Rig& rig, const BackendConfig& config, Window& window) {
-  return {.time_offset = clamp_around(rig.time_offset_s, config.time_offset_bound_s, window.time_offset_s),
-          .extrinsics = limit_extrinsics(rig.T_b_c, config, window.T_b_c),
-          .depth_scale = clamp_around(1.0, config.depth.scale_bound, window.depth_scale)};
 }
 
 }  // namespace stillpoint

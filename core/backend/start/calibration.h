@@ -66,7 +66,11 @@ class Calibration {
   /// @param window calibration that contradicts the rig becomes variable in it
   void compare_with_rig(const RigStep& step, const StateCovariance& covariance, Window& window);
 
-  /// `limit_calibration` about the rig.
+  /// Moves the calibration of a window back into its bounds around the values of the rig: the time offset and
+  /// the depth scale are clamped, the translation and the rotation vector of the extrinsics relative to the
+  /// rig are shortened. An estimate outside of them is implausible, and IMU samples are only provided up to
+  /// the bound of the time offset (see `last_imu_end_of`).
+  /// @return which values were at their bound
   CalibrationAtBound limit(Window& window) const;
 
  private:
@@ -125,17 +129,10 @@ void average_imu_at_exposure(const ImuBuffer& imu, WindowFrame& frame);
   return config.time_offset_model == TimeOffsetModel::kInertial || config.prior == PriorModel::kConsistent;
 }
 
-/// Adds the configured random walks of time offset, extrinsics and depth scale to a prior.
-/// @param agrees calibration that does not walk
+/// Adds the configured random walks of time offset and extrinsics to a prior.
+/// @param agrees extrinsics that agree with the rig do not walk
 /// @param seconds by which the prior advances: from the oldest frame to the next one
 void add_calibration_walk(const BackendConfig& config, const AgreesWithRig& agrees, double seconds,
                           LinearPrior& prior);
-
-/// Moves the calibration of a window back into its bounds around the calibrated values of the rig: the time
-/// offset and the depth scale are clamped, the translation and the rotation vector of the extrinsics relative
-/// to the rig are shortened. An estimate outside of them is implausible, and IMU samples are only provided up
-/// to the bound of the time offset (see `last_imu_end_of`).
-/// @return which values were at their bound
-CalibrationAtBound limit_calibration(const Rig& rig, const BackendConfig& config, Window& window);
 
 }  // namespace stillpoint

@@ -26,7 +26,7 @@ TEST(CalibrationBounds, LeaveAPlausibleCalibrationUnchanged) {
   window.T_b_c = Pose{exp_so3({0.0, 0.09, 0.0}), {0.03, 0.03, 0.0}};
   window.depth_scale = 0.71;
   const Window before = window;
-  const CalibrationAtBound at_bound = limit_calibration(rig, bounded_config(), window);
+  const CalibrationAtBound at_bound = Calibration(bounded_config(), true, rig).limit(window);
   EXPECT_FALSE(at_bound.time_offset || at_bound.extrinsics || at_bound.depth_scale);
   EXPECT_EQ(window.time_offset_s, before.time_offset_s);
   EXPECT_EQ(window.T_b_c.p, before.T_b_c.p);
@@ -42,7 +42,7 @@ TEST(CalibrationBounds, LimitTheDeviationFromTheRig) {
   window.time_offset_s = -0.32;
   window.T_b_c = Pose{rig.T_b_c.q * exp_so3({0.0, 0.2, 0.0}), {0.1, 0.3, 0.4}};
   window.depth_scale = 1.5;
-  const CalibrationAtBound at_bound = limit_calibration(rig, bounded_config(), window);
+  const CalibrationAtBound at_bound = Calibration(bounded_config(), true, rig).limit(window);
   EXPECT_TRUE(at_bound.time_offset && at_bound.extrinsics && at_bound.depth_scale);
   EXPECT_DOUBLE_EQ(window.time_offset_s, -0.08);
   EXPECT_LT((window.T_b_c.p - Eigen::Vector3d(0.1, 0.03, 0.04)).norm(), 1e-12);  // 0.05 of (0.3, 0.4)
