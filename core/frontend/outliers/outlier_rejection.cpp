@@ -201,8 +201,4 @@ const InlierMask& OutlierRejector::find(std::span<const Match> matches,
   return inliers_;
 }
 
-InlierMask find_inliers(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
-  return OutlierRejector().find(matches, settings);
-}
-
 }  // namespace stillpoint

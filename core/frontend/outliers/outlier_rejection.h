@@ -70,10 +70,29 @@ struct OutlierRejectionSettings {
   bool is_large = false;          ///< see RigidMotionSettings
 };
 
-/// `find_inliers` with buffers that are reused between calls; otherwise stateless.
+/// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.
+///
+/// kEpipolar: fundamental matrix F; residual = distance of `to` to the epipolar line l = F (from, 1)
+/// (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene F is not unique, but every
+/// solution fits the static matches, so none of them is rejected. Motion along the line is not detected.
+///
+/// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`estimate_rigid_motion`);
+/// residual = |pi(T_to_from (depth (from, 1))) - to|, pi(p) = (p.x, p.y) / p.z, which covers both directions
+/// and has no degenerate motion. Matches without depth use the epipolar line of the pose,
+/// l = t x (R (from, 1)), residual = |l . (to, 1)| / |(l.x, l.y)|. The motion between two frames is small
+/// compared to the depth, so depth errors have little effect. Falls back to kEpipolar if fewer than 20
+/// matches have depth or the pose has too few inliers.
+///
+/// kMajority: as kRigid, by `MajorityMotion`. Behind a person who covers most of the image it rejects the
+/// scene more often, which inertial data would recognize: with an IMU, kRigid is better.
+///
+/// Not specified by the paper; the published code uses kEpipolar.
+///
+/// An instance is reused for its buffers; only `motion` and `has_model` are of the last call.
 class OutlierRejector {
  public:
-  /// As `find_inliers`. @return valid until the next call
+  /// @return all ones if there are fewer than 8 matches or no model has enough inliers; valid until the next
+  /// call
   [[nodiscard]] const InlierMask& find(std::span<const Match> matches,
                                        const OutlierRejectionSettings& settings);
 
@@ -94,26 +113,5 @@ class OutlierRejector {
   std::optional<Pose> motion_;
   bool has_model_ = false;
 };
-
-/// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.
-///
-/// kEpipolar: fundamental matrix F; residual = distance of `to` to the epipolar line l = F (from, 1)
-/// (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene F is not unique, but every
-/// solution fits the static matches, so none of them is rejected. Motion along the line is not detected.
-///
-/// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`estimate_rigid_motion`);
-/// residual = |pi(T_to_from (depth (from, 1))) - to|, pi(p) = (p.x, p.y) / p.z, which covers both directions
-/// and has no degenerate motion. Matches without depth use the epipolar line of the pose,
-/// l = t x (R (from, 1)), residual = |l . (to, 1)| / |(l.x, l.y)|. The motion between two frames is small
-/// compared to the depth, so depth errors have little effect. Falls back to kEpipolar if fewer than 20
-/// matches have depth or the pose has too few inliers.
-///
-/// kMajority: as kRigid, by `MajorityMotion`. Behind a person who covers most of the image it rejects the
-/// scene more often, which inertial data would recognize: with an IMU, kRigid is better.
-///
-/// Not specified by the paper; the published code uses kEpipolar.
-/// @return all ones if there are fewer than 8 matches or no model has enough inliers
-[[nodiscard]] InlierMask find_inliers(std::span<const Match> matches,
-                                      const OutlierRejectionSettings& settings);
 
 }  // namespace stillpoint

@@ -40,6 +40,10 @@ std::vector<Match> static_matches(Scene scene, const Pose& T_to_from, int count)
 
 OutlierRejectionSettings settings_for(OutlierModel model) { return {.model = model, .focal_px = kFocalPx}; }
 
+InlierMask find_inliers(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
+  return OutlierRejector().find(matches, settings);
+}
+
 long count_inliers(const InlierMask& inliers) {
   return std::count(inliers.begin(), inliers.end(), std::uint8_t{1});
 }
