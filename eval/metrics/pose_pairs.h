@@ -1,18 +1,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs of poses of the strict protocols, and the relations point_distance and full of evo_rpe.
-///
-///   d_ij = | |p(G_j) - p(G_i)| - |p(E_j) - p(E_i)| |
-///   |F - I| = sqrt(|p(F)|^2 + 8 sin^2(angle(R(F)) / 2)), the Frobenius norm of 4x4 matrices, without a unit
-///
-/// G: ground truth; E: estimate; F: error of a pose or a pair (rpe.h); p(.), R(.): translation and rotation.
+/// Pairs of matched poses that are a fixed time, path length, angle or number of frames apart: the relative
+/// motions whose errors rpe.h computes.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
-#include "eval/metrics/rpe.h"
+#include "core/base/fields.h"
+#include "eval/trajectory/pose_matches.h"
 
 namespace stillpoint::eval {
+
+/// Of the distance between the poses of a pair.
+enum class RpeUnit { kSeconds, kFrames, kMeters, kDegrees };
+constexpr auto enum_names(RpeUnit) {
+  return EnumNames<RpeUnit, 4>{{{RpeUnit::kSeconds, "s"},
+                                {RpeUnit::kFrames, "f"},
+                                {RpeUnit::kMeters, "m"},
+                                {RpeUnit::kDegrees, "deg"}}};
+}
+
+/// Start and end of a relative motion, as indices of matches.
+struct PosePair {
+  PoseIndex from = 0;
+  PoseIndex to = 0;
+
+  friend bool operator==(const PosePair&, const PosePair&) = default;
+};
+
+/// Pairs found, and the number of starts without an end within the tolerance.
+struct PosePairs {
+  std::vector<PosePair> pairs;
+  std::size_t dropped = 0;
+};
+
+/// Pairs (i, i + step) for i = 0, step, 2 step, ... (default of evo), or for every i (evo's all_pairs).
+[[nodiscard]] std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start);
+
+/// Pairs every match with the one whose time is closest to `delta_s` later. Pairs that miss `delta_s` by more
+/// than `tolerance_s` are dropped, so a gap does not distort the error and no pose is paired with itself.
+[[nodiscard]] PosePairs pairs_over_seconds(MatchView matches, double delta_s, double tolerance_s);
+
+/// Path length from the first match to each [m].
+enum class PathOf { kGroundTruth, kEstimate };
+[[nodiscard]] std::vector<double> path_lengths(MatchView matches, PathOf of);
+
+/// Rotation angle of the ground truth from the first match to each, summed over consecutive ones [deg].
+[[nodiscard]] std::vector<double> path_angles_deg(MatchView matches);
+
+/// Pairs every match with the later one whose path length from it is closest to `delta_m`, the first of
+/// equally close ones. Also for angles, in degrees. Pairs that miss `delta_m` by more than `tolerance_m` are
+/// dropped. Same pairs as evo's all_pairs in meters, which has a tolerance of 10 %.
+/// @param lengths_m non-decreasing, as from `path_lengths`
+/// @param delta_m desired path length between the matches of a pair
+/// @param tolerance_m inclusive
+[[nodiscard]] PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m,
+                                          double tolerance_m);
 
 inline constexpr double kSegmentTolerance = 0.02;  ///< relative to the length of a segment, or to delta [m]
 
@@ -26,13 +70,5 @@ inline constexpr double kSegmentTolerance = 0.02;  ///< relative to the length o
 /// @param delta > 0
 /// @param unit of delta
 [[nodiscard]] PosePairs strict_pairs(MatchView matches, double delta, RpeUnit unit);
-
-/// d_ij of every pair [m].
-[[nodiscard]] std::vector<double> point_distance_errors(MatchView matches, std::span<const PosePair> pairs);
-
-/// |F - I|.
-/// @param translation_m |p(F)|
-/// @param rotation_deg angle(R(F))
-[[nodiscard]] double whole_transformation_error(double translation_m, double rotation_deg);
 
 }  // namespace stillpoint::eval

@@ -5,14 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
-#include "core/base/error.h"
 #include "eval/metrics/ate.h"
-#include "eval/metrics/pose_pairs.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -25,93 +22,7 @@ double yaw_in_world(const Eigen::Matrix3d& R_w_e, const Eigen::Quaterniond& E) {
   return std::atan2(R_w_e.row(1).dot(column), R_w_e.row(0).dot(column));
 }
 
-PosePair pair_of(std::size_t from, std::size_t to) {
-  return {static_cast<PoseIndex>(from), static_cast<PoseIndex>(to)};
-}
-
-/// First index >= `begin` with the path length of `index`; several poses have it where the camera rests.
-std::size_t first_with_length(std::span<const double> lengths_m, std::size_t begin, std::size_t index) {
-  const auto first = lengths_m.begin();
-  const auto last = first + static_cast<std::ptrdiff_t>(index);
-  const auto found = std::lower_bound(first + static_cast<std::ptrdiff_t>(begin), last, lengths_m[index]);
-  return static_cast<std::size_t>(found - first);
-}
-
 }  // namespace
-
-std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start) {
-  STILLPOINT_CHECK(step > 0);
-  std::vector<PosePair> pairs;
-  for (std::size_t i = 0; i + step < poses; i += every_start ? 1 : step)
-    pairs.push_back(pair_of(i, i + step));
-  return pairs;
-}
-
-PosePairs pairs_over_seconds(MatchView matches, double delta_s, double tolerance_s) {
-  PosePairs result;
-  result.pairs.reserve(matches.size());
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Timestamp target = after(matches.time(i), delta_s);
-    const auto difference = [&](std::size_t k) { return std::abs(seconds_between(target, matches.time(k))); };
-    j = std::max(j, i);
-    while (j + 1 < matches.size() && difference(j + 1) < difference(j)) ++j;
-    if (j > i && difference(j) <= tolerance_s) {
-      result.pairs.push_back(pair_of(i, j));
-    } else {
-      ++result.dropped;
-    }
-  }
-  return result;
-}
-
-std::vector<double> path_lengths(MatchView matches, PathOf of) {
-  std::vector<double> lengths;
-  lengths.reserve(matches.size());
-  Eigen::Vector3d previous = Eigen::Vector3d::Zero();
-  for (const MatchedPose& match : matches) {
-    const Eigen::Vector3d& p = of == PathOf::kGroundTruth ? match.gt.p : match.est.p;
-    lengths.push_back(lengths.empty() ? 0.0 : lengths.back() + (p - previous).norm());
-    previous = p;
-  }
-  return lengths;
-}
-
-std::vector<double> path_angles_deg(MatchView matches) {
-  std::vector<double> angles;
-  angles.reserve(matches.size());
-  Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
-  for (const MatchedPose& match : matches) {
-    const double step = kDegrees * rotation_angle(previous.conjugate() * match.gt.q);
-    angles.push_back(angles.empty() ? 0.0 : angles.back() + step);
-    previous = match.gt.q;
-  }
-  return angles;
-}
-
-PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, double tolerance_m) {
-  PosePairs result;
-  result.pairs.reserve(lengths_m.size());
-  std::size_t j = 0;
-  for (std::size_t i = 0; i + 1 < lengths_m.size(); ++i) {
-    const auto difference = [&](std::size_t k) { return std::abs(lengths_m[k] - lengths_m[i] - delta_m); };
-    j = std::max(j, i + 1);
-    // The closest is the first pose at or beyond the target length, or the last position before it.
-    while (j + 1 < lengths_m.size() && lengths_m[j] - lengths_m[i] < delta_m) ++j;
-    std::size_t best = j;
-    if (lengths_m[j] - lengths_m[i] < delta_m) {
-      best = first_with_length(lengths_m, i + 1, j);
-    } else if (j > i + 1 && difference(j - 1) <= difference(j)) {
-      best = first_with_length(lengths_m, i + 1, j - 1);
-    }
-    if (difference(best) <= tolerance_m) {
-      result.pairs.push_back(pair_of(i, best));
-    } else {
-      ++result.dropped;
-    }
-  }
-  return result;
-}
 
 // Inlined as a whole: calls for each product of quaternions took an eighth of the time of `eval`.
 [[gnu::flatten]] RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs,
@@ -134,6 +45,21 @@ PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, d
     if (with_yaw) errors.yaw_deg.push_back(kDegrees * std::abs(yaw_in_world(to.est.R(), error.q)));
   }
   return errors;
+}
+
+std::vector<double> point_distance_errors(MatchView matches, std::span<const PosePair> pairs) {
+  std::vector<double> errors_m;
+  errors_m.reserve(pairs.size());
+  for (const auto& [begin, end] : pairs) {
+    const MatchedPose from = matches[begin];
+    const MatchedPose to = matches[end];
+    errors_m.push_back(std::abs((to.gt.p - from.gt.p).norm() - (to.est.p - from.est.p).norm()));
+  }
+  return errors_m;
+}
+
+double whole_transformation_error(double translation_m, double rotation_deg) {
+  return std::hypot(translation_m, std::sqrt(8.0) * std::sin(0.5 * rotation_deg * std::numbers::pi / 180.0));
 }
 
 namespace {
@@ -352,33 +278,6 @@ std::optional<double> drift_percent(std::span<const SegmentErrors> segments) {
   }
   if (count == 0.0) return std::nullopt;
   return 100.0 * sum / count;
-}
-
-double FrameToFrameError::next(const std::optional<MatchedPose>& pose) {
-  const std::optional<MatchedPose> previous = std::exchange(previous_, pose);
-  if (!previous) return std::numeric_limits<double>::quiet_NaN();
-  if (!pose) return std::numeric_limits<double>::infinity();
-  const Pose gt_motion = previous->gt.inverse() * pose->gt;
-  const Pose est_motion = previous->est.inverse() * pose->est;
-  return (gt_motion.inverse() * est_motion).p.norm();
-}
-
-WorstFrames::Insertion WorstFrames::insert(std::size_t frame, double value) {
-  if (std::isnan(value)) return {};
-  const auto position =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.value < value; });
-  if (position == entries_.end() && entries_.size() >= capacity_) return {};
-  entries_.insert(position, {frame, value});
-  if (entries_.size() <= capacity_) return {.inserted = true, .evicted = std::nullopt};
-  const Insertion insertion{.inserted = true, .evicted = entries_.back().frame};
-  entries_.pop_back();
-  return insertion;
-}
-
-std::vector<std::size_t> WorstFrames::frames() const {
-  std::vector<std::size_t> frames;
-  for (const Entry& entry : entries_) frames.push_back(entry.frame);
-  return frames;
 }
 
 }  // namespace stillpoint::eval

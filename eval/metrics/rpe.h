@@ -27,10 +27,6 @@
 /// `segment_errors`: trans, rot and yaw over segments (sub-trajectories) of fixed length, as in Zhang and
 /// Scaramuzza, IROS 2018: pairs (k, m) with m = argmin_m |s_m - (s_k + d)|, where s is the path length of the
 /// ground truth and d the length of the segment.
-///
-/// `FrameToFrameError`: trans between consecutive frames, independent of the alignment.
-///
-///   e_k = |p((G_(k-1)^-1 G_k)^-1 (E_(k-1)^-1 E_k))|
 #pragma once
 
 #include <cstddef>
@@ -39,7 +35,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/fields.h"
+#include "eval/metrics/pose_pairs.h"
 #include "eval/metrics/statistics.h"
 #include "eval/trajectory/pose_matches.h"
 
@@ -50,43 +46,6 @@ inline constexpr std::size_t kFewRpePairs = 10;
 
 /// Of strict protocols: to each neighbor in the ground truth [s], one interval at 10 Hz plus jitter.
 inline constexpr double kStrictMaxGap = 0.11;
-
-/// Start and end of a relative motion, as indices of matches.
-struct PosePair {
-  PoseIndex from = 0;
-  PoseIndex to = 0;
-
-  friend bool operator==(const PosePair&, const PosePair&) = default;
-};
-
-/// Pairs found, and the number of starts without an end within the tolerance.
-struct PosePairs {
-  std::vector<PosePair> pairs;
-  std::size_t dropped = 0;
-};
-
-/// Pairs (i, i + step) for i = 0, step, 2 step, ... (default of evo), or for every i (evo's all_pairs).
-[[nodiscard]] std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start);
-
-/// Pairs every match with the one whose time is closest to `delta_s` later. Pairs that miss `delta_s` by more
-/// than `tolerance_s` are dropped, so a gap does not distort the error and no pose is paired with itself.
-[[nodiscard]] PosePairs pairs_over_seconds(MatchView matches, double delta_s, double tolerance_s);
-
-/// Path length from the first match to each [m].
-enum class PathOf { kGroundTruth, kEstimate };
-[[nodiscard]] std::vector<double> path_lengths(MatchView matches, PathOf of);
-
-/// Rotation angle of the ground truth from the first match to each, summed over consecutive ones [deg].
-[[nodiscard]] std::vector<double> path_angles_deg(MatchView matches);
-
-/// Pairs every match with the later one whose path length from it is closest to `delta_m`, the first of
-/// equally close ones. Also for angles, in degrees. Pairs that miss `delta_m` by more than `tolerance_m` are
-/// dropped. Same pairs as evo's all_pairs in meters, which has a tolerance of 10 %.
-/// @param lengths_m non-decreasing, as from `path_lengths`
-/// @param delta_m desired path length between the matches of a pair
-/// @param tolerance_m inclusive
-[[nodiscard]] PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m,
-                                          double tolerance_m);
 
 /// trans, rot and yaw of every pair, in the order of the pairs.
 struct RelativeErrors {
@@ -102,13 +61,15 @@ struct RelativeErrors {
 [[nodiscard]] RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs,
                                              bool with_yaw = true, RelativeErrors recycled = {});
 
-enum class RpeUnit { kSeconds, kFrames, kMeters, kDegrees };
-constexpr auto enum_names(RpeUnit) {
-  return EnumNames<RpeUnit, 4>{{{RpeUnit::kSeconds, "s"},
-                                {RpeUnit::kFrames, "f"},
-                                {RpeUnit::kMeters, "m"},
-                                {RpeUnit::kDegrees, "deg"}}};
-}
+/// d_ij = | |p(G_j) - p(G_i)| - |p(E_j) - p(E_i)| | of every pair [m]: the relation point_distance of
+/// evo_rpe.
+[[nodiscard]] std::vector<double> point_distance_errors(MatchView matches, std::span<const PosePair> pairs);
+
+/// |F - I| = sqrt(|p(F)|^2 + 8 sin^2(angle(R(F)) / 2)), the Frobenius norm of 4x4 matrices, without a unit:
+/// the relation full of evo_rpe.
+/// @param translation_m |p(F)|
+/// @param rotation_deg angle(R(F))
+[[nodiscard]] double whole_transformation_error(double translation_m, double rotation_deg);
 
 struct RpeOptions {
   double delta = 1.0;  ///< in `unit`, > 0
@@ -184,43 +145,5 @@ struct SegmentOptions {
 
 /// Drift: mean over all segments of |p(F_km)| / d, in percent.
 [[nodiscard]] std::optional<double> drift_percent(std::span<const SegmentErrors> segments);
-
-/// Relative pose error between each frame and the previous one.
-class FrameToFrameError {
- public:
-  /// To be called for every frame in order.
-  /// @param pose estimate and ground truth of the frame; nullopt if either is missing
-  /// @return e_k [m]; infinity at the first frame without a pose after one with a pose; NaN at other frames
-  ///         where this frame or the previous one has no pose
-  [[nodiscard]] double next(const std::optional<MatchedPose>& pose);
-
- private:
-  std::optional<MatchedPose> previous_;
-};
-
-/// The `capacity` frames with the largest values.
-class WorstFrames {
- public:
-  explicit WorstFrames(std::size_t capacity) : capacity_(capacity) {}
-
-  struct Insertion {
-    bool inserted = false;
-    std::optional<std::size_t> evicted;  ///< frame removed to stay within the capacity
-  };
-
-  /// Among equal values, frames inserted earlier rank higher. NaN is ignored.
-  Insertion insert(std::size_t frame, double value);
-
-  /// In order of decreasing value.
-  [[nodiscard]] std::vector<std::size_t> frames() const;
-
- private:
-  struct Entry {
-    std::size_t frame = 0;
-    double value = 0.0;
-  };
-  std::size_t capacity_;
-  std::vector<Entry> entries_;  ///< in order of decreasing value
-};
 
 }  // namespace stillpoint::eval

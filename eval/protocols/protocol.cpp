@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "eval/metrics/pose_pairs.h"
 #include "eval/openloris/benchmark.h"
 #include "eval/trajectory/orientations.h"
 

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "datasets/io/image_io.h"
 #include "datasets/io/shared_module.h"
+#include "eval/metrics/rpe.h"
 #include "eval/trajectory/alignment.h"
 
 namespace stillpoint::report {

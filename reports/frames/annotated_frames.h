@@ -13,7 +13,7 @@
 
 #include "core/pipeline/runners/runner.h"
 #include "datasets/sensor_stream.h"
-#include "eval/metrics/rpe.h"
+#include "eval/metrics/frame_to_frame_error.h"
 #include "reports/frames/video_module.h"
 
 namespace stillpoint::report {

@@ -16,6 +16,7 @@
 #include "datasets/faults/faulty_stream.h"
 #include "datasets/faults/sensor_fault.h"
 #include "eval/io/text_reader.h"
+#include "eval/metrics/frame_to_frame_error.h"
 #include "eval/metrics/rpe.h"
 #include "eval/metrics/statistics.h"
 #include "eval/protocols/protocol.h"

@@ -36,9 +36,9 @@ struct RunSeries {
   std::vector<double> t_s;  ///< since the first frame
   /// x, y, z [m] of the camera aligned to the ground truth (unaligned without one), qx, qy, qz of its
   /// rotation (a unit quaternion with qw >= 0), error_m, error_deg, three_sigma_m and three_sigma_deg
-  /// (claimed, along the least certain direction), frame_to_frame_error_m (see eval/metrics/rpe.h), features,
-  /// landmarks, dynamic (fraction of the features), status (position in `OdometryStatus`), ms:MODULE. Empty
-  /// columns are omitted.
+  /// (claimed, along the least certain direction), frame_to_frame_error_m (see frame_to_frame_error.h),
+  /// features, landmarks, dynamic (fraction of the features), status (position in `OdometryStatus`),
+  /// ms:MODULE. Empty columns are omitted.
   std::vector<SeriesColumn> columns;
   /// Indices into `t_s` by falling frame-to-frame error: the frames that have an image, else the 20 worst.
   std::vector<std::size_t> worst;

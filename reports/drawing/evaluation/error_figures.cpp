@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "eval/metrics/pose_pairs.h"
+#include "eval/metrics/rpe.h"
 #include "reports/drawing/evaluation/figure_parts.h"
 
 namespace stillpoint::report {

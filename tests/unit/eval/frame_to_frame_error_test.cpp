@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "eval/metrics/rpe.h"
+#include "eval/metrics/frame_to_frame_error.h"
 
 #include <cmath>
 #include <limits>
