@@ -146,6 +146,7 @@ struct TrackingLimits {
   int visible_features = 20;  ///< in a frame from which a new segment can begin
   int min_relocalization_frames =
       10;  ///< such frames after a loss, at least: a camera of 4 Hz has four per second
+  double max_dead_reckoning_sigma_m = 0.5;  ///< growth of the position's deviation without vision: lost
   double max_repetition_s = 0.12;  ///< without a new image, for constant velocity: three frames at 30 Hz
   int min_first_features = 8;      ///< with a measured depth, from which a window can start
 };
