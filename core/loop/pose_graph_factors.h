@@ -92,7 +92,7 @@ class HeadingManifold final : public ceres::Manifold {
 ///
 ///   dX_b/dp = -R_m_b^T,   dX_b/dtheta = [X_b]x,   dX_b/dX = R_m_b^T
 ///
-/// with poses as in pose_graph_factors.h.
+/// with poses as above.
 class PointFactor final : public ceres::SizedCostFunction<3, 7, 3> {
  public:
   /// @param p_c z > 0
