@@ -119,7 +119,8 @@ MetricSeries series_of(const Metric& stored, const PairedSubject& runs) {
                       .variant = variant_label(identity),
                       .unit = stored.unit,
                       .descriptor = gated_metric(stored.name),
-                      .inputs = runs.inputs.size()};
+                      .inputs = runs.inputs.size(),
+                      .is_noisy = !repeats_by_design(identity)};
   for (const RunPair& pair : runs.pairs) {
     if (const std::optional<eval::Pair> values = comparable_values(pair, stored.name))
       series.pairs.push_back(*values);
@@ -169,6 +170,7 @@ class CostTable {
     series.unit = stored.unit;
     series.descriptor = &metric;
     series.test = is_exact ? ChangeTest::kExact : ChangeTest::kPairs;
+    series.is_noisy = !is_exact;
     series.decides = decides || is_exact;
     if (std::isfinite(pair.base) && std::isfinite(pair.changed)) series.pairs.push_back(pair);
     inputs_[key].insert(input_of(identity));
@@ -299,6 +301,7 @@ MetricSeries pooled(const std::vector<const MetricSeries*>& parts) {
   for (const MetricSeries* part : parts) {
     series.inputs += part->inputs;
     series.sequences += part->sequences;
+    series.is_noisy = series.is_noisy || part->is_noisy;
     series.pairs.insert(series.pairs.end(), part->pairs.begin(), part->pairs.end());
   }
   return series;
@@ -515,6 +518,7 @@ std::optional<MetricChange> change_of(const MetricSeries& series, const TestFami
                       .change = *tested,
                       .is_absolute = has_zero_base(series),
                       .test = series.test,
+                      .is_noisy = series.is_noisy,
                       .level = series.decides ? family.level : 0.0};
   if (series.decides) change.adjusted_interval = tested_change(series, 1.0 - family.level)->interval;
   const MetricGate& gate = *series.descriptor->gate;
@@ -575,7 +579,7 @@ ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric)
       sign * change.change.median > 0.0 ? ChangeClass::kWorse : ChangeClass::kBetter;
   if (change.test == ChangeTest::kExact) return relevant ? direction : ChangeClass::kSame;
   if (relevant && change.change.p_value <= change.level) return direction;
-  const double limit = gate.family == MetricFamily::kAccuracy ? margin : 0.0;
+  const double limit = change.is_noisy ? 0.0 : margin;
   const bool is_same = change.change.interval ? is_within(change.change.interval, margin) ||
                                                     is_within(change.difference_interval, gate.floor)
                                               : change.largest <= limit;

@@ -55,6 +55,7 @@ struct MetricSeries {
   std::size_t inputs = 1;         ///< number of different data and seeds
   std::size_t sequences = 1;      ///< each counted once per variant
   std::size_t repetitions = 0;    ///< that would make it exact if they were bit-equal; 0: none would
+  bool is_noisy = false;          ///< two runs of one program may differ by more than rounding
   std::vector<eval::Pair> pairs;  ///< one per pair of runs
   std::vector<double> base;       ///< `kReplicates`: one value per replicate
   std::vector<double> head;
@@ -144,6 +145,7 @@ struct MetricChange {
       change;                ///< number of pairs, estimate, p-value, 95 % interval if there are enough pairs
   bool is_absolute = false;  ///< `change` and all intervals are differences in the unit of the metric
   ChangeTest test = ChangeTest::kPairs;
+  bool is_noisy = false;         ///< as in `MetricSeries`
   double level = kSignificance;  ///< largest p-value that is significant, see `TestFamily`
   /// Confidence interval at 1 - `level`; nullopt if there are too few pairs for it.
   std::optional<eval::Interval> adjusted_interval{};
@@ -171,8 +173,9 @@ struct MetricChange {
 ///   kWorse         m >= margin, |d| >= floor and p <= level
 ///   kBetter        m <= -margin, |d| >= floor and p <= level
 ///   kSame          -margin <= l and u <= margin, or -floor <= dl and du <= floor; without intervals: of the
-///                  pairs that differ by the floor or more, none changed (cost), or none by more than the
-///                  margin (accuracy, which has no noise apart from rounding)
+///                  pairs that differ by the floor or more, none changed (of costs, and of accuracy unless
+///                  `repeats_by_design`), or none by more than the margin (accuracy without noise
+///                  apart from rounding)
 ///   kInconclusive  otherwise
 ///
 /// If a value of base is 0 there is no relative change: m, l and u are differences in the unit of the metric,

@@ -15,8 +15,8 @@ constexpr std::string_view kTables = "all tables";
 constexpr ResultWord kWords[] = {
     {kCompare, "same",
      "the 95 % interval of the change lies within the margin, or that of the difference within the floor; "
-     "without an interval: no pair that differs by the floor changed by more than the margin (error), or at "
-     "all (cost)"},
+     "without an interval: no pair that differs by the floor changed by more than the margin (error of this "
+     "odometry), or at all (cost, or error of another system or in real time)"},
     {kCompare, "better",
      "change for the better of at least margin and floor, p <= level or exact; fewer failures"},
     {kCompare, "inconclusive",

@@ -68,17 +68,17 @@ TEST(Classify, ADifferenceThatMayExceedTheFloorIsNotTheSame) {
   EXPECT_EQ(classify(change_of(0.10, 0.15, 0.01), metric), ChangeClass::kInconclusive);
 }
 
-TEST(Classify, WithoutIntervalAccuracyIsTheSameWithinTheMarginAndACostIfItIsEqual) {
+TEST(Classify, WithoutIntervalAChangeIsTheSameWithinTheMarginAndANoisyOneIfItIsNone) {
   MetricChange change = change_of(0.04, 0.0, 1.0);
   change.change.interval.reset();
   EXPECT_EQ(classify(change, kError), ChangeClass::kSame);
-  MetricDescriptor cost = kError;
-  cost.gate->family = MetricFamily::kCost;
-  EXPECT_EQ(classify(change, cost), ChangeClass::kInconclusive);
+  MetricChange noisy = change;
+  noisy.is_noisy = true;
+  EXPECT_EQ(classify(noisy, kError), ChangeClass::kInconclusive);
   change.largest = 0.06;
   EXPECT_EQ(classify(change, kError), ChangeClass::kInconclusive);
-  change.largest = 0.0;
-  EXPECT_EQ(classify(change, cost), ChangeClass::kSame);
+  noisy.largest = 0.0;
+  EXPECT_EQ(classify(noisy, kError), ChangeClass::kSame);
 }
 
 TEST(Comparison, TestsCostsOnlyIfTrajectoriesAreBitEqual) {
