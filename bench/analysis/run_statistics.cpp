@@ -203,6 +203,20 @@ void add_estimates(AblationRow& row, const std::vector<std::vector<eval::Pair>>&
   if (has_ratios) row.change = eval::relative_change(ratios);
 }
 
+/// Why a row has no pairs of runs, whatever their outcome.
+/// @param sequence empty: all
+std::string unpaired_doubt(const std::string& sequence, const SubjectTable& base,
+                           const SubjectTable& changed) {
+  const auto has_runs = [&](const SubjectTable& table) {
+    return std::ranges::any_of(
+        table, [&](const auto& entry) { return sequence.empty() || std::get<0>(entry.first) == sequence; });
+  };
+  if (!has_runs(base)) return "no run of the base";
+  if (!has_runs(changed)) return "no run of the variant";
+  return sequence.empty() ? "no sequence and seed in common with the base"
+                          : "no seed in common with the base";
+}
+
 /// @param names variant and sequence of the row
 AblationRow row_of(const AblationRow& names, const SubjectTable& base, const SubjectTable& changed,
                    const std::string& metric) {
@@ -226,7 +240,8 @@ AblationRow row_of(const AblationRow& names, const SubjectTable& base, const Sub
   }
   row.sequences = pairs.size();
   add_estimates(row, pairs);
-  row.doubt = coverage_doubt(coverages, metric);
+  row.doubt =
+      sequences.empty() ? unpaired_doubt(names.sequence, base, changed) : coverage_doubt(coverages, metric);
   return row;
 }
 

@@ -57,7 +57,8 @@ struct AblationRow {
   std::optional<eval::PairedDifference> difference;
   std::optional<eval::RelativeChange> change;  ///< nullopt also if a value of 0 changes: only a difference
   /// "coverage 0.33, base 1.00: not comparable" of errors of poses, about the pair in which the coverages
-  /// differ most; empty if by at most `kMaxCoverageGap`.
+  /// differ most; empty if by at most `kMaxCoverageGap`. Without any pair of runs, the reason: "no seed in
+  /// common with the base".
   std::string doubt;
 };
 

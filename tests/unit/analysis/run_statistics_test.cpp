@@ -95,6 +95,20 @@ TEST(Ablation, CountsPairsInWhichOnlyTheVariantFailed) {
   EXPECT_FALSE(rows[0].difference.has_value());
 }
 
+TEST(Ablation, ARowWithoutPairsNamesTheReason) {
+  const std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("full", "a", 2, 1.0),
+                                       run_of("wo", "a", 3, 1.0),   run_of("full", "b", 1, 1.0),
+                                       run_of("wo", "c", 1, 1.0),   run_of("lost", "b", 1, 1.0)};
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  ASSERT_EQ(rows.size(), 8u);
+  EXPECT_EQ(rows[0].doubt, "no sequence and seed in common with the base");
+  EXPECT_EQ(rows[1].doubt, "no seed in common with the base");
+  EXPECT_EQ(rows[2].doubt, "no run of the variant");
+  EXPECT_EQ(rows[3].doubt, "no run of the base");
+  EXPECT_EQ(rows[4].doubt, "");
+  EXPECT_EQ(rows[6].doubt, "");
+}
+
 TEST(Ablation, ErrorsOverFewerFramesAreNotComparable) {
   std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("wo", "a", 1, 0.4),
                                  run_of("full", "b", 1, 1.0), run_of("wo", "b", 1, 0.9)};
