@@ -325,7 +325,7 @@ TEST(ExternalSystem, ParametersAreSwept) {
   EXPECT_EQ(repeat.exit_code, 0) << repeat.err;
   EXPECT_NE(repeat.out.find("All repetitions are bit-equal"), std::string::npos) << repeat.out;
   // Two runs were repeated once: 0.05^(1/2) = 0.22.
-  EXPECT_NE(repeat.out.find("up to 78 % of their runs may still differ"), std::string::npos) << repeat.out;
+  EXPECT_NE(repeat.out.find("up to 78 % of the runs of replay (2)"), std::string::npos) << repeat.out;
   EXPECT_EQ(repeat.out.find("a single run is sufficient"), std::string::npos) << repeat.out;
 }
 

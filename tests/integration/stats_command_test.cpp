@@ -435,6 +435,27 @@ TEST_F(StatsCommand, ASweepNamesCopiesAndRunsWithoutAValue) {
   }
 }
 
+TEST_F(StatsCommand, EqualRepetitionsOfASystemSayNothingAboutAnother) {
+  {
+    bench::StoreWriter writer(file_);
+    for (const auto& [system, repetitions] : {std::pair("orb", 2), {"vins", 4}}) {
+      for (int repetition = 1; repetition <= repetitions; ++repetition) {
+        const bench::RunIdentity identity{
+            .system = system, .variant = system, .sequence = "a", .repetition = repetition};
+        static_cast<void>(writer.acquire(identity));
+        writer.finish(identity,
+                      {.metrics = {{"ate_rmse_m", "", "m", 0.01}}, .attachments = {{"trajectory", "x"}}});
+      }
+    }
+  }
+  const ProgramResult result = stats({"repeat"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  // 0.05^(1/1) = 0.05, 0.05^(1/3) = 0.37.
+  EXPECT_NE(result.out.find("up to 95 % of the runs of orb (1), up to 63 % of the runs of vins (3)"),
+            std::string::npos)
+      << result.out;
+}
+
 TEST_F(StatsCommand, RejectsAMetricThatNoRunHas) {
   fill(1);
   for (const char* command : {"summary", "ablation", "sweep"})

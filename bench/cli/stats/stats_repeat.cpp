@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint stats repeat`.
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/analysis/paired_runs.h"
 #include "bench/cli/command_line.h"
@@ -22,23 +24,32 @@ report::DataRow joined_values(report::DataRow values, const report::DataRow& mor
   return values;
 }
 
-/// Whether all repetitions are equal, and the number of those that confirm a run and need not by design.
+/// Whether all repetitions are equal, and by system the number of those that confirm a run and need not by
+/// design.
 struct RepetitionSummary {
   bool all_equal = true;
-  std::size_t confirming = 0;
+  std::map<std::string, std::size_t> confirming{};
 };
 
+std::string system_and_mode(const RunIdentity& identity) {
+  return identity.mode.ends_with("realtime") ? identity.system + " in real time" : identity.system;
+}
+
 /// Where repetitions need not be equal by design, n of them without a difference exclude, with a confidence
-/// of 95 %, that more than 1 - 0.05^(1/n) of the runs differ.
+/// of 95 %, that more than 1 - 0.05^(1/n) of the runs of that system differ.
 std::string repetition_note(const RepetitionSummary& summary) {
   if (!summary.all_equal)
     return "Some repetitions differ or failed: evaluate failures and the spread over repetitions.";
-  if (summary.confirming == 0) return "All repetitions are bit-equal: a single run is sufficient.";
-  const double most = 1.0 - std::pow(0.05, 1.0 / static_cast<double>(summary.confirming));
+  if (summary.confirming.empty()) return "All repetitions are bit-equal: a single run is sufficient.";
+  std::vector<std::string> bounds;
+  for (const auto& [system, count] : summary.confirming) {
+    const double most = 1.0 - std::pow(0.05, 1.0 / static_cast<double>(count));
+    bounds.push_back(fmt::format("up to {:.0f} % of the runs of {} ({})", 100.0 * most, system, count));
+  }
   return fmt::format(
-      "All repetitions are bit-equal. Of other systems and in real time, {} a first run: up to {:.0f} % of "
-      "their runs may still differ (95 % confidence).",
-      summary.confirming == 1 ? "one repeats" : fmt::format("{} repeat", summary.confirming), 100.0 * most);
+      "All repetitions are bit-equal. Of other systems and in real time, runs may still differ (95 % "
+      "confidence; number of runs that repeat a first one): {}.",
+      fmt::join(bounds, ", "));
 }
 
 int compare_repetitions(const Store& store, const RunSelection& selection, const StatsArguments& arguments) {
@@ -53,7 +64,8 @@ int compare_repetitions(const Store& store, const RunSelection& selection, const
     GroupRows rows{.group = &group, .rows = {}, .data = {}};
     for (const RepetitionRow& row : repetition_report(store, group.runs)) {
       summary.all_equal = summary.all_equal && row.is_repeatable();
-      if (!repeats_by_design(row.identity)) summary.confirming += row.repetitions - 1;
+      if (!repeats_by_design(row.identity))
+        summary.confirming[system_and_mode(row.identity)] += row.repetitions - 1;
       const std::string unknown = row.distinct_trajectories == 1 ? "none" : "not recorded";
       rows.rows.push_back({row.label, fmt::format("{}", row.repetitions), fmt::format("{}", row.failed),
                            fmt::format("{}", row.distinct_trajectories),
