@@ -388,6 +388,11 @@ TEST(ExternalSystem, AStoredRunIsRepeatedWithItsDescription) {
   const ProgramResult result = run_here(folder, command);
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
   EXPECT_NE(result.out.find("equal trajectories; ATE 0.007"), std::string::npos) << result.out;
+  // The plan of the store has the run of the newer description then.
+  EXPECT_EQ(bench_system(folder, "replay.toml").exit_code, 0);
+  const ProgramResult older = run_here(folder, command);
+  EXPECT_EQ(older.exit_code, 0) << older.out << older.err;
+  EXPECT_NE(older.out.find("equal trajectories; ATE 0.007"), std::string::npos) << older.out;
   fs::remove_all(folder.path() / "cache");
   const ProgramResult unknown = run_here(folder, {"reproduce", "0123456789", "--store", store_of(folder)});
   EXPECT_EQ(unknown.exit_code, 2);

@@ -180,12 +180,21 @@ PlanMatrix expanded_again(const fs::path& plan, const StoredRun& run) {
   }
 }
 
+/// Whether a plan has the run, with any build and config: an entry of a plan is the run of the newest ones.
+bool has_run(const Store& store, const StoredPlan& plan, const StoredRun& run) {
+  const std::string planned = planned_key(run.identity);
+  return std::ranges::any_of(store.plan_runs(plan.name),
+                             [&](const StoredRun& other) { return planned_key(other.identity) == planned; });
+}
+
 /// The stored run as a plan of one run.
 /// @param folder receives the text of its plan
 PlanMatrix matrix_of_run(const Store& store, const StoredRun& run, const fs::path& folder) {
   const bool is_own = run.identity.system == kOwnSystem;
+  bool is_planned = false;
   for (const StoredPlan& plan : store.plans()) {
-    if (std::ranges::find(plan.run_keys, run.key) == plan.run_keys.end()) continue;
+    if (!has_run(store, plan, run)) continue;
+    is_planned = true;
     write_files(folder, {{plan.name + ".toml", plan.text}});
     PlanMatrix matrix = expanded_again(folder / (plan.name + ".toml"), run);
     std::erase_if(matrix.runs, [&](PlannedRun& planned) {
@@ -195,14 +204,17 @@ PlanMatrix matrix_of_run(const Store& store, const StoredRun& run, const fs::pat
       }
       return run_key(planned.identity) != run.key;
     });
-    if (matrix.runs.empty())
-      throw InputError("run " + run.key, "cannot be repeated: it was executed by build " +
-                                             run.identity.build +
-                                             ", or with other data or another config than today's");
+    if (matrix.runs.empty()) continue;
     if (!is_own) matrix.systems.at(matrix.runs.front().system) = stored_system(store, run);
     return matrix;
   }
-  throw InputError("run " + run.key, "belongs to no plan of the store");
+  if (!is_planned) throw InputError("run " + run.key, "belongs to no plan of the store");
+  throw InputError(
+      "run " + run.key,
+      fmt::format("cannot be repeated: it was executed by build {}, or with other data or another "
+                  "config than today's; `stillpoint history` with another --store executes a "
+                  "commit again, and `stillpoint stats repeat --with` compares both",
+                  run.identity.build));
 }
 
 /// Prints how a run differs from its repetition. @return findings if it does
