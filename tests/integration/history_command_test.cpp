@@ -227,6 +227,18 @@ TEST(Bisect, FindsEachPlantedCommitInFiveBuilds) {
   }
 }
 
+TEST(Bisect, OfOneCommitIsNoConfirmationByTheSameRuns) {
+  const MadeUpProject& project = shared_project();
+  const ProgramResult result = project.run(
+      {"bisect", "ate_rmse_m", project.commit(6) + ".." + project.commit(7), "--system",
+       project.file("slam.toml"), "--plan", project.file("plan.toml"), "--out", project.file("bisect-one")});
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("first commit with the change: " + project.commit(7)), std::string::npos)
+      << result.out;
+  EXPECT_NE(result.out.find("the only commit of the range"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("confirmed"), std::string::npos) << result.out;
+}
+
 TEST(Bisect, RejectsAMetricThatTheRunsDoNotHave) {
   const MadeUpProject& project = shared_project();
   const ProgramResult result =

@@ -253,6 +253,10 @@ int search(VersionComparer& versions, const BisectArguments& arguments) {
   const SourceCommit& commit = versions.commits()[found.first_after];
   std::cout << fmt::format("first commit with the change: {} ({}) {}\n", commit.hash, commit.time,
                            commit.subject);
+  if (last == 1) {
+    std::cout << fmt::format("the only commit of the range; {} built now\n", versions.new_builds());
+    return kExitOk;
+  }
   const bool is_confirmed =
       find_change(versions, arguments, found.last_before, found.first_after).has_value();
   std::cout << fmt::format("{} by its runs and those of its parent; {} of {} used, {} built now\n",
