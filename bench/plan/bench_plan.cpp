@@ -424,6 +424,33 @@ void require_runs(const BenchPlan& plan) {
   require_group("rendered", plan.rendered.sequences, plan.rendered.variants);
   require_group("recorded", plan.recorded.sequences, plan.recorded.variants);
 }
+namespace {
+
+/// A sweep over something that the plan does not run has no run, and settings of it change nothing.
+void require_varied(const BenchPlan& plan) {
+  const auto has_own = [&plan](const std::vector<std::string>& sequences,
+                               const std::vector<std::string>& variants) {
+    return !sequences.empty() && !(plan.variants.empty() && variants.empty());
+  };
+  const bool is_rendered = !plan.rendered.sequences.empty();
+  const bool is_own = has_own(plan.rendered.sequences, plan.rendered.variants) ||
+                      has_own(plan.recorded.sequences, plan.recorded.variants);
+  const auto reject = [&plan](const std::string& place, const std::string& problem) {
+    throw InputError(place_of(plan, place), "\"" + place + "\" " + problem);
+  };
+  constexpr const char* kOfScene = "changes rendered sequences, and the plan has none; add [rendered]";
+  for (const SweepAxis& axis : plan.sweep) {
+    if (axis.key.starts_with(kSynthPrefix) && !is_rendered) reject("sweep." + axis.key, kOfScene);
+    if (is_config_key(axis.key) && !is_own)
+      reject("sweep." + axis.key, "changes this odometry, and the plan has no variant of it; add variants");
+  }
+  for (const SweepAxis& setting : plan.synth_settings) {
+    if (!is_rendered) reject(std::string(kSynthPrefix) + setting.key, kOfScene);
+  }
+}
+
+}  // namespace
+
 
 namespace {
 
@@ -440,6 +467,7 @@ std::string base_of(const std::string& variant, const std::string& base,
   }
   return base;
 }
+  require_varied(plan);
 
 }  // namespace
 

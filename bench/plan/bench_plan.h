@@ -187,7 +187,8 @@ decltype(auto) at_place(const BenchPlan& plan, const std::string& key, const Act
   }
 }
 
-/// Requires that the plan names a sequence, and that each group of sequences has a variant or a system.
+/// Requires that the plan names a sequence, that each group of sequences has a variant or a system, and that
+/// it has what a sweep and [synth] vary.
 /// @throws InputError with the missing key
 void require_runs(const BenchPlan& plan);
 

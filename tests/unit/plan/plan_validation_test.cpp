@@ -68,6 +68,38 @@ TEST(PlanValidation, RejectsPlansWithoutRuns) {
                {"plan.toml:1: the list of seeds is empty"});
 }
 
+TEST(PlanValidation, RejectsASweepOfWhatThePlanDoesNotRun) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "seq");
+  folder.write("s.toml", "name = \"s\"\ncommand = [\"s\"]\n");
+  const auto fault = [&](const std::string& text, const std::vector<std::string>& parts) {
+    expect_input_error([&] { static_cast<void>(expanded(folder, text)); }, parts);
+  };
+  const std::string recorded = "recorded.sequences = [\"./seq\"]\n";
+  fault("variants = [\"vo\"]\n" + recorded + "[sweep]\nsynth.walkers = [0, 2]",
+        {"plan.toml:4: \"sweep.synth.walkers\"", "add [rendered]"});
+  fault("variants = [\"vo\"]\n" + recorded + "[synth]\nwalkers = 2",
+        {"plan.toml:4: \"synth.walkers\"", "add [rendered]"});
+  fault("systems = [\"s.toml\"]\n" + recorded + "[sweep]\nfrontend.max_features = [50]",
+        {"plan.toml:4: \"sweep.frontend.max_features\"", "add variants"});
+}
+
+TEST(PlanValidation, APublishedTableIsAFileBesideThePlan) {
+  const TemporaryFolder folder;
+  const std::string table = "title = \"t\"\nunit = \"m\"\nalignment = \"rigid\"\nmetric = ";
+  const auto file = folder.write("mine.toml", table + "\"ate_rmse_m\"\n");
+  folder.write("other.toml", table + "\"ate_rmse\"\n");
+  const auto plan = [&](const std::string& name) {
+    return load_plan(folder.write("plan.toml", "[table]\npublished = [\"" + name + "\"]\n").string());
+  };
+  EXPECT_EQ(plan("mine.toml").table.published.front(), file.string());
+  EXPECT_EQ(plan("mine.toml").files.at("mine.toml"), file.string());
+  expect_input_error([&] { static_cast<void>(plan("none.toml")); },
+                     {"plan.toml:2: none.toml", "correct the path"});
+  expect_input_error([&] { static_cast<void>(plan("other.toml")); },
+                     {"plan.toml:2: ", "other.toml", "\"metric\" is \"ate_rmse\", which no run has"});
+}
+
 TEST(PlanValidation, ListsInTheConfigTableKeepTheirElements) {
   const TemporaryFolder folder;
   const PlanMatrix matrix = expanded(folder,
