@@ -36,6 +36,7 @@ constexpr const char* kLockFile = "lock";
 constexpr const char* kSystemsFile = "systems";
 constexpr const char* kFilesFile = "files";
 constexpr std::string_view kCopiedConfigPrefix = "config-";
+constexpr std::string_view kCopiedTablePrefix = "published-";
 constexpr std::string_view kSystemPrefix = "system-";
 constexpr std::string_view kKeysPrefix = "keys-";
 constexpr std::string_view kStorePrefix = "store-";
@@ -151,15 +152,27 @@ std::string copy_config(const std::string& name, const fs::path& folder, std::si
   return (target / fs::path(files.front()).lexically_relative(common)).string();
 }
 
-/// Text of the file `kFilesFile`; copies configs if the workers do not share the file system.
+/// Copies a published table. @return its path in the job folder
+std::string copy_table(const std::string& file, const fs::path& folder, std::size_t index) {
+  const std::string target = std::string(kCopiedTablePrefix) + std::to_string(index) + ".toml";
+  fs::copy_file(file, folder / target, fs::copy_options::overwrite_existing);
+  return target;
+}
+
+/// Text of the file `kFilesFile`; copies configs and published tables if the workers do not share the file
+/// system.
 std::string files_text(const fs::path& folder, const BenchPlan& plan, SystemFiles system_files) {
   std::string text;
   std::size_t index = 0;
   for (const auto& [name, found] : plan.files) {
     std::string path = fs::absolute(found).string();
-    if (system_files == SystemFiles::kCopied)
-      path = name.ends_with(".toml") ? copy_config(found, folder, index++)
-                                     : (fs::path("data") / fs::canonical(found).filename()).string();
+    if (system_files == SystemFiles::kCopied) {
+      const bool is_table = std::ranges::find(plan.table.published, found) != plan.table.published.end();
+      if (!name.ends_with(".toml"))
+        path = (fs::path("data") / fs::canonical(found).filename()).string();
+      else
+        path = is_table ? copy_table(found, folder, index++) : copy_config(found, folder, index++);
+    }
     text += name + "\n" + path + "\n";
   }
   return text;

@@ -17,6 +17,7 @@
 #include "bench/config/settings.h"
 #include "bench/config/spelling.h"
 #include "bench/config/toml_source.h"
+#include "bench/model/metrics.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/run/odometry_run.h"
 #include "bench/systems/external_run.h"
@@ -136,6 +137,16 @@ void record_files(BenchPlan& plan) {
     const std::string found = sequence_of_plan(sequence, plan);
     if (sequence.find('/') != std::string::npos) plan.files[sequence] = found;
     sequence = found;
+  }
+}
+
+/// Resolves the published tables that are files, and records where they are.
+void find_published(BenchPlan& plan) {
+  for (std::string& table : plan.table.published) {
+    if (!table.ends_with(".toml")) continue;
+    const std::string found = file_of_plan(table, plan);
+    plan.files[table] = found;
+    table = found;
   }
 }
 
@@ -383,7 +394,12 @@ void validate_plan(const BenchPlan& plan) {
   require_systems(plan);
   at_place(plan, "ablation_base", [&] { require_ablation_base(plan); });
   at_place(plan, "table.published", [&] {
-    for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));
+    for (const std::string& name : plan.table.published) {
+      const std::string metric = load_published(name).metric;
+      if (metric != "mean_ms" && find_metric(without_protocol(metric)) == nullptr)
+        throw InputError(name,
+                         "\"metric\" is \"" + metric + "\", which no run has; see the ids in result.json");
+    }
   });
 }
 
@@ -402,28 +418,12 @@ BenchPlan load_plan(const std::string& name, const std::vector<std::string>& sys
   if (plan.title.empty()) plan.title = plan.name;
   plan.systems = systems.empty() ? at_place(plan, "systems", [&] { return descriptions_of(plan); }) : systems;
   plan.files = std::move(files);
+  at_place(plan, "table.published", [&] { find_published(plan); });
   validate_plan(plan);
   record_files(plan);
   return plan;
 }
 
-void require_runs(const BenchPlan& plan) {
-  const auto require_group = [&plan](const std::string& group, const std::vector<std::string>& sequences,
-                                     const std::vector<std::string>& variants) {
-    if (sequences.empty() || !variants.empty() || !plan.variants.empty() || !plan.systems.empty()) return;
-    throw InputError(place_of(plan, plan.places.contains("variants") ? "variants" : group + ".sequences"),
-                     "the plan has no variant and no system to run; add e.g. variants = [\"stillpoint\"]");
-  };
-  if (plan.rendered.sequences.empty() && plan.recorded.sequences.empty()) {
-    throw InputError(plan.path,
-                     "the plan names no sequence; add e.g. [rendered] with "
-                     "sequences = [\"walking_xyz\"]");
-  }
-  if (plan.seeds.empty())
-    throw InputError(place_of(plan, "seeds"), "the list of seeds is empty; add seeds = [1]");
-  require_group("rendered", plan.rendered.sequences, plan.rendered.variants);
-  require_group("recorded", plan.recorded.sequences, plan.recorded.variants);
-}
 namespace {
 
 /// A sweep over something that the plan does not run has no run, and settings of it change nothing.
@@ -451,6 +451,24 @@ void require_varied(const BenchPlan& plan) {
 
 }  // namespace
 
+void require_runs(const BenchPlan& plan) {
+  const auto require_group = [&plan](const std::string& group, const std::vector<std::string>& sequences,
+                                     const std::vector<std::string>& variants) {
+    if (sequences.empty() || !variants.empty() || !plan.variants.empty() || !plan.systems.empty()) return;
+    throw InputError(place_of(plan, plan.places.contains("variants") ? "variants" : group + ".sequences"),
+                     "the plan has no variant and no system to run; add e.g. variants = [\"stillpoint\"]");
+  };
+  if (plan.rendered.sequences.empty() && plan.recorded.sequences.empty()) {
+    throw InputError(plan.path,
+                     "the plan names no sequence; add e.g. [rendered] with "
+                     "sequences = [\"walking_xyz\"]");
+  }
+  if (plan.seeds.empty())
+    throw InputError(place_of(plan, "seeds"), "the list of seeds is empty; add seeds = [1]");
+  require_group("rendered", plan.rendered.sequences, plan.rendered.variants);
+  require_group("recorded", plan.recorded.sequences, plan.recorded.variants);
+  require_varied(plan);
+}
 
 namespace {
 
@@ -467,7 +485,6 @@ std::string base_of(const std::string& variant, const std::string& base,
   }
   return base;
 }
-  require_varied(plan);
 
 }  // namespace
 

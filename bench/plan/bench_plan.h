@@ -61,7 +61,9 @@ void visit_fields(Visitor&& field, Config& config) {
 
 /// Layout of the result table.
 struct TableLayout {
-  std::vector<std::string> published;  ///< tables of published numbers to show as well, e.g. "tum_fr3_ate"
+  /// Tables of published numbers to show as well: names ("tum_fr3_ate"), or files of the form of these,
+  /// relative to the plan, else to the working folder, which `bench` prints and pages lack.
+  std::vector<std::string> published;
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, TableLayout>

@@ -32,8 +32,9 @@ struct PublishedTable {
 };
 
 /// @param name embedded name ("tum_fr3_ate") or a TOML file
-/// @throws InputError if there is no such file, it is malformed, a source is not listed in [sources], or a
-/// row has no input and the table has no default
+/// @throws InputError if there is no such file, it is malformed, has an unknown key, a number that is
+/// negative or not finite, or another unit than the metric is measured in, a source is not listed in
+/// [sources], or a row has no input and the table has no default
 [[nodiscard]] PublishedTable load_published(const std::string& name);
 
 /// The system with its input: "NGD-SLAM (RGB-D)".

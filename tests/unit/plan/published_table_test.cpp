@@ -76,5 +76,25 @@ TEST(PublishedTable, RejectsANumberWithoutItsSource) {
                      {"q.toml:9: \"a\" must be a number"});
 }
 
+TEST(PublishedTable, RejectsWhatItWouldShowWronglyOrLeaveOut) {
+  const TemporaryFolder folder;
+  const auto fault = [&](const std::string& unit, const std::string& rest,
+                         const std::vector<std::string>& parts) {
+    const std::string head = "title = \"t\"\nmetric = \"ate_rmse_m\"\nunit = \"" + unit +
+                             "\"\nalignment = \"rigid\"\ninput = \"RGB-D\"\nsources = {A = \"a\"}\n";
+    const auto file = folder.write("p.toml", head + rest);
+    expect_input_error([&] { static_cast<void>(load_published(file.string())); }, parts);
+  };
+  const std::string row = "[[row]]\nsystem = \"s\"\nsource = \"A\"\n";
+  fault("cm", row + "values = {a = 1}\n",
+        {"p.toml:3: \"unit\" is \"cm\"", "ate_rmse_m is measured in \"m\""});
+  fault("m", "[[rows]]\nsystem = \"s\"\n", {"p.toml:7: unknown key \"rows\"", "\"row\"?"});
+  fault("m", "[row]\nsystem = \"s\"\n", {"p.toml:7: \"row\" must be a list of tables: [[row]]"});
+  fault("m", "comparability = \"x\"\n", {"p.toml:7: \"comparability\" must be a list"});
+  fault("m", row + "values = {a = 1}\nnotes = \"x\"\n", {"p.toml:11: unknown key \"notes\"", "\"note\"?"});
+  fault("m", row + "values = {a = nan}\n", {"p.toml:10: \"a\" is nan; leave a value out"});
+  fault("m", row + "values = {a = 1, b = -2}\n", {"p.toml:10: \"b\" is -2"});
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
