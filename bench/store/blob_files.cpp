@@ -33,10 +33,11 @@ std::string compressed(std::string_view content) {
 }
 
 InputError damaged(const fs::path& file, const std::string& how) {
-  return {file.string(),
-          how +
-              "; merge the run from a copy of the store, or save the rest with `stillpoint store "
-              "salvage STORE OUT`"};
+  return {
+      file.string(),
+      how +
+          "; restore it with `stillpoint store merge COPY --store STORE` if there is a copy of the store, "
+          "or save the rest with `stillpoint store salvage STORE OUT`"};
 }
 
 std::string decompressed(const std::string& packed, const fs::path& file) {
@@ -87,7 +88,7 @@ fs::path BlobFiles::file(const std::string& name) const {
 std::string BlobFiles::put(std::string_view content) const {
   std::string name = blob_name(content);
   const fs::path target = file(name);
-  if (fs::exists(target)) return name;
+  if (is_readable(name)) return name;
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) cannot_write(target.parent_path(), error.value());
@@ -106,6 +107,16 @@ std::string BlobFiles::get(const std::string& name) const {
   std::string content = decompressed(packed.str(), path);
   if (blob_name(content) != name) throw damaged(path, "has content that does not match its hash");
   return content;
+}
+
+bool BlobFiles::is_readable(const std::string& name) const {
+  if (!fs::exists(file(name))) return false;
+  try {
+    static_cast<void>(get(name));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 std::vector<std::string> BlobFiles::names() const {

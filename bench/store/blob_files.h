@@ -14,14 +14,17 @@ class BlobFiles {
   /// @param folder need not exist before the first `put`
   explicit BlobFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Stores a content unless it is stored already, and syncs it to disk. Safe for concurrent processes and
-  /// threads.
+  /// Stores a content unless it is stored already, and syncs it to disk; a damaged file is replaced. Safe for
+  /// concurrent processes and threads.
   /// @return its name: 32 hexadecimal digits, two XXH64 of the content
   /// @throws InputError if it cannot be written; no partial file remains
   [[nodiscard]] std::string put(std::string_view content) const;
 
   /// @throws InputError if the file is missing, not zstd, or its content has another hash
   [[nodiscard]] std::string get(const std::string& name) const;
+
+  /// Whether `get` has the content.
+  [[nodiscard]] bool is_readable(const std::string& name) const;
 
   /// Names of all stored files, sorted.
   [[nodiscard]] std::vector<std::string> names() const;

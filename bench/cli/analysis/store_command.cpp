@@ -313,7 +313,9 @@ int collect(const StoreArguments& arguments) {
 
 /// @return findings if runs contradict those of the store
 int print_merge(const MergeReport& report) {
-  std::cout << fmt::format("{} added, {} already present\n", counted(report.added, "run"), report.present);
+  std::cout << fmt::format(
+      "{} added, {} already present{}\n", counted(report.added, "run"), report.present,
+      report.restored > 0 ? fmt::format(", {} of these restored", counted(report.restored, "file")) : "");
   if (report.contradicting.empty()) return kExitOk;
   std::cout << fmt::format(
       "{} of these ended with other results there, which are kept; put the others into "

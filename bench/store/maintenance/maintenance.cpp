@@ -218,16 +218,29 @@ std::map<std::string, std::string> plans_of(const Store& store) {
 
 }  // namespace
 
-RunMerger::RunMerger(const fs::path& into) : writer_(into) {
-  for (const StoredRun& run : Store(into).runs()) present_[run.key] = results_of(run.outcome, run.metrics);
+RunMerger::RunMerger(const fs::path& into) : writer_(into), files_(files_folder(into) / "blobs") {
+  for (const StoredRun& run : Store(into).runs())
+    present_[run.key] = {results_of(run.outcome, run.metrics), run.blobs};
+}
+
+void RunMerger::restore_files(const PresentRun& run, const RunOutcome& outcome) {
+  for (const auto& [kind, content] : outcome.attachments) {
+    const auto known = run.files.find(kind);
+    if (known == run.files.end() || known->second != blob_name(content) || files_.is_readable(known->second))
+      continue;
+    static_cast<void>(files_.put(content));
+    ++report_.restored;
+  }
 }
 
 void RunMerger::add(const RunIdentity& identity, const RunOutcome& outcome) {
   const bool is_added = add_run(writer_, identity, outcome);
   ++(is_added ? report_.added : report_.present);
   const Results results = results_of(outcome.outcome, outcome.metrics);
-  const auto [known, is_new] = present_.try_emplace(run_key(identity), results);
-  if (!is_new && !is_added && known->second != results) report_.contradicting.push_back(label_of(identity));
+  const auto [known, is_new] = present_.try_emplace(run_key(identity), PresentRun{results, {}});
+  if (is_new || is_added) return;
+  restore_files(known->second, outcome);
+  if (known->second.results != results) report_.contradicting.push_back(label_of(identity));
 }
 
 MergeReport merge_stores(const fs::path& from, const fs::path& into) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/model/stored_run.h"
+#include "bench/store/blob_files.h"
 #include "bench/store/store_writer.h"
 
 namespace stillpoint::bench {
@@ -33,13 +34,15 @@ GarbageReport collect_garbage(const std::filesystem::path& file);
 
 struct MergeReport {
   std::size_t added = 0;
-  std::size_t present = 0;  ///< already in the target store
+  std::size_t present = 0;   ///< already in the target store
+  std::size_t restored = 0;  ///< files of these that were missing or damaged there
   /// Those of them that ended there with another outcome or other errors: "run KEY (SEQUENCE VARIANT)".
   std::vector<std::string> contradicting;
 };
 
 /// Adds completed runs to a store, which is created if it does not exist. Runs that it already contains are
-/// not changed, but compared, apart from what depends on the machine.
+/// not changed, but compared, apart from what depends on the machine; their missing or damaged files are
+/// restored.
 class RunMerger {
  public:
   explicit RunMerger(const std::filesystem::path& into);
@@ -51,9 +54,16 @@ class RunMerger {
 
  private:
   using Results = std::map<std::string, std::string>;  ///< text by name
+  struct PresentRun {
+    Results results;
+    std::map<std::string, std::string> files;  ///< names by kind
+  };
+
+  void restore_files(const PresentRun& run, const RunOutcome& outcome);
 
   StoreWriter writer_;
-  std::map<std::string, Results> present_;  ///< by key of the run
+  BlobFiles files_;
+  std::map<std::string, PresentRun> present_;  ///< by key of the run
   MergeReport report_;
 };
 

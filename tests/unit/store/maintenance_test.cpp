@@ -73,6 +73,20 @@ TEST(StoreMaintenance, MergeAddsMissingRuns) {
   expect_input_error([&] { merge_stores(into, into); }, {"is the same store"});
 }
 
+TEST(StoreMaintenance, MergeOfACopyRestoresDamagedAndMissingFiles) {
+  const TemporaryFolder folder;
+  const fs::path file = store_of(folder, "s.sqlite", {"a", "b", "c"});
+  const fs::path copy = store_of(folder, "copy.sqlite", {"a", "b", "c"});
+  const BlobFiles blobs(files_folder(file) / "blobs");
+  std::ofstream(blobs.file(blobs.names()[0]), std::ios::trunc) << "x";
+  fs::remove(blobs.file(blobs.names()[1]));
+  const MergeReport report = merge_stores(copy, file);
+  EXPECT_EQ(report.added, 0u);
+  EXPECT_EQ(report.restored, 2u);
+  EXPECT_TRUE(verify_store(file).empty());
+  EXPECT_EQ(merge_stores(copy, file).restored, 0u);
+}
+
 TEST(StoreMaintenance, MergeImportAndExportKeepTheTimesOfRuns) {
   const TemporaryFolder folder;
   const fs::path from = folder.path() / "from.sqlite";
