@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/store/store_progress.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <map>
 
@@ -104,8 +106,21 @@ std::vector<StoredRun> newest_runs(const Database& database, std::size_t limit) 
 
 }  // namespace
 
+namespace {
+
+/// Device and inode; zeros without a file.
+std::pair<std::uint64_t, std::uint64_t> inode_of(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return {0, 0};
+  return {status.st_dev, status.st_ino};
+}
+
+}  // namespace
+
 ProgressReader::ProgressReader(const std::filesystem::path& file)
-    : store_(file), database_(file, DatabaseAccess::kRead) {}
+    : store_(file), database_(file, DatabaseAccess::kRead), file_(inode_of(file)) {}
+
+bool ProgressReader::is_replaced() const { return inode_of(store_.file()) != file_; }
 
 bool ProgressReader::has_changed() {
   const std::int64_t version = database_.integer("PRAGMA data_version");

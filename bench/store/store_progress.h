@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/store/database.h"
@@ -48,6 +49,10 @@ class ProgressReader {
   /// @throws InputError as `Store`
   explicit ProgressReader(const std::filesystem::path& file);
 
+  /// Whether the file was removed or replaced by another one since the constructor: what is read no longer
+  /// changes then.
+  [[nodiscard]] bool is_replaced() const;
+
   /// Whether the store was written since the last call; true at the first one.
   [[nodiscard]] bool has_changed();
 
@@ -60,7 +65,8 @@ class ProgressReader {
  private:
   Store store_;
   Database database_;
-  std::int64_t version_ = -1;  ///< of the content, see PRAGMA data_version
+  std::pair<std::uint64_t, std::uint64_t> file_;  ///< device and inode
+  std::int64_t version_ = -1;                     ///< of the content, see PRAGMA data_version
 };
 
 }  // namespace stillpoint::bench

@@ -280,7 +280,7 @@ class WatchedPages {
       : arguments_(arguments),
         index_{"index.html",
                report::live_html(fs::path(arguments.store).filename().string(), StaticServer::kEvents)},
-        reader_(arguments.store),
+        reader_(std::make_unique<ProgressReader>(arguments.store)),
         server_({index_}, arguments.server) {}
 
   [[nodiscard]] const StaticServer& server() const { return server_; }
@@ -288,10 +288,11 @@ class WatchedPages {
   /// Publishes the state of the store, and renders its pages: in at most a tenth of the time while there are
   /// workers.
   void update() {
-    const bool changed = reader_.has_changed();
+    if (reader_->is_replaced() && !open_again()) return;
+    const bool changed = reader_->has_changed();
     is_outdated_ = is_outdated_ || changed;
     if (!changed && !is_outdated_ && !has_workers_) return;
-    const StoreProgress progress = reader_.read(std::chrono::system_clock::now(), kNewestRuns);
+    const StoreProgress progress = reader_->read(std::chrono::system_clock::now(), kNewestRuns);
     has_workers_ = progress.workers > 0;
     if (is_outdated_ && (!has_workers_ || Clock::now() >= next_rendering_)) render(progress);
     server_.publish(report::progress_json(progress, rendered_));
@@ -303,12 +304,26 @@ class WatchedPages {
   static constexpr std::size_t kNewestRuns = 50;
   static constexpr int kPauses = 9;  // duration of the pause after a rendering, in renderings
 
+  /// Opens the store that is at the place of a removed one. @return false if there is none yet
+  bool open_again() {
+    try {
+      reader_ = std::make_unique<ProgressReader>(arguments_.store);
+      spdlog::info("{} is another store now", arguments_.store);
+      is_missing_ = false;
+      is_outdated_ = true;
+    } catch (const InputError& error) {
+      if (!is_missing_) spdlog::warn("{}; the pages show its last content", error.what());
+      is_missing_ = true;
+    }
+    return !is_missing_;
+  }
+
   void render(const StoreProgress& progress) {
     is_outdated_ = false;
     if (progress.ended == 0) return;
     const Clock::time_point start = Clock::now();
     try {
-      std::vector<OutputFile> files = served_files(reader_.store(), arguments_, "dashboard/");
+      std::vector<OutputFile> files = served_files(reader_->store(), arguments_, "dashboard/");
       files.push_back(index_);
       server_.replace(files);
       rendered_ = static_cast<std::size_t>(progress.ended);
@@ -320,11 +335,12 @@ class WatchedPages {
 
   ServeArguments arguments_;
   OutputFile index_;
-  ProgressReader reader_;
+  std::unique_ptr<ProgressReader> reader_;
   StaticServer server_;
   std::size_t rendered_ = 0;  ///< runs of the pages
   bool is_outdated_ = false;  ///< the store was written after the last rendering
   bool has_workers_ = false;
+  bool is_missing_ = false;  ///< the store was removed
   Clock::time_point next_rendering_{};
 };
 

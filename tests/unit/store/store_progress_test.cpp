@@ -110,5 +110,17 @@ TEST(StoreProgress, NoticesChangesOfOtherConnections) {
   EXPECT_EQ(reader.read(system_clock::now(), 10).ended, 3);
 }
 
+TEST(StoreProgress, NoticesThatTheStoreWasRemovedOrReplaced) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s.sqlite";
+  static_cast<void>(writer_of(file, system_clock::now()));
+  const ProgressReader reader(file);
+  EXPECT_FALSE(reader.is_replaced());
+  std::filesystem::rename(file, folder.path() / "old.sqlite");
+  EXPECT_TRUE(reader.is_replaced());
+  static_cast<void>(writer_of(file, system_clock::now()));
+  EXPECT_TRUE(reader.is_replaced());
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
