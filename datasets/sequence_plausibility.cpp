@@ -244,13 +244,17 @@ std::optional<std::string> gravity_finding(const SequenceInfo& info) {
       force_c.x(), force_c.y(), force_c.z());
 }
 
-void ImagePlausibility::add(const Frame& frame) {
+void ImagePlausibility::add_depth(const Frame& frame) {
   for (int row = 0; row < frame.depth.rows; row += kDepthStep_px) {
     for (int column = 0; column < frame.depth.cols; column += kDepthStep_px) {
       const std::uint16_t raw = frame.depth.at<std::uint16_t>(row, column);
       if (raw != 0) depths_m_.push_back(static_cast<float>(raw / frame.depth_units_per_m));
     }
   }
+}
+
+void ImagePlausibility::add(const Frame& frame) {
+  add_depth(frame);
   compare_depth(frame);
   if (info_.imu.empty()) return;
   add_motion(frame);

@@ -53,6 +53,8 @@ class ImagePlausibility {
 
   /// @param frame the next one; a frame that cannot be decoded is left out
   void add(const Frame& frame);
+  /// What `add` collects for `depth_unit_finding` alone.
+  void add_depth(const Frame& frame);
   /// What `add` collects for `depth_scale_by_truth` alone.
   void compare_depth(const Frame& frame);
 

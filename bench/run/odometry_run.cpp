@@ -17,6 +17,7 @@
 #include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
 #include "datasets/open_sequence.h"
+#include "datasets/sequence_plausibility.h"
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
@@ -177,11 +178,13 @@ std::vector<Trajectory> segments_of(std::span<const eval::ClaimedPose> claims) {
   return segments;
 }
 
+constexpr int kDepthInterval = 10;  ///< frames per one whose depth is checked
+
 /// Records the output of a runner.
 class RunRecorder {
  public:
   RunRecorder(const datasets::SensorStream& stream, const RunSpec& spec)
-      : stream_(stream), spec_(spec), drifted_(stream.info()) {
+      : stream_(stream), spec_(spec), drifted_(stream.info()), depth_(stream.info()) {
     if (spec.config.pipeline.imu_rate) imu_rate_.emplace(spec.config, stream.info().imu);
     run_.trajectory.frame = "camera";
     if (spec.config.loop.enabled) {
@@ -202,6 +205,7 @@ class RunRecorder {
     const OdometryUpdate& update = report.update;
     record(update);
     if (spec_.keep_spans) record_spans(update);
+    if (update.frame_id % kDepthInterval == 0) depth_.add_depth(report.frame);
     // The runner's time of image decoding is the time of waiting for decoded frames.
     decoded_.for_items.ns += update.timings[Module::kImageDecoding].ns;
     decoded_.for_items.waits += update.timings[Module::kImageDecoding].calls;
@@ -213,6 +217,7 @@ class RunRecorder {
   [[nodiscard]] OdometryRun finish(RunSummary summary, double wall_s, const FramePrefetcher& prefetcher) {
     run_.summary = std::move(summary);
     run_.wall_s = wall_s;
+    run_.depth_finding = depth_.depth_unit_finding();
     if (imu_rate_) run_.imu_rate = imu_rate_->take();
     if (run_.loops && run_.summary.loops) {
       run_.loops->report = std::move(*run_.summary.loops);
@@ -306,6 +311,7 @@ class RunRecorder {
   OdometryRun run_;
   std::optional<ImuRatePoses> imu_rate_;
   DriftedTracks drifted_;
+  datasets::ImagePlausibility depth_;  ///< of the measurements of some frames
   ChannelWaits decoded_{.channel = kDecodedFrames, .for_items = {}, .for_room = {}};
 };
 

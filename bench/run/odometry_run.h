@@ -146,8 +146,9 @@ struct OdometryRun {
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();  ///< of the last update
   std::optional<Eigen::Matrix2d> level_covariance;  ///< of that rotation: `StateCovariance::gravity` [rad^2]
   EstimatedCalibration calibration;
-  ImuNoiseFactors imu_noise;          ///< estimate at the end; 1 unless `imu.adapt_noise`
-  std::optional<DeviceScore> device;  ///< of the machine, if the caller measured it
+  std::optional<std::string> depth_finding;  ///< `ImagePlausibility::depth_unit_finding` of every tenth frame
+  ImuNoiseFactors imu_noise;                 ///< estimate at the end; 1 unless `imu.adapt_noise`
+  std::optional<DeviceScore> device;         ///< of the machine, if the caller measured it
   std::size_t frames_planned = 0;
   std::chrono::nanoseconds recording{};  ///< time spent on recording this
   double wall_s = 0.0;                   ///< from the request of the first frame to the last update

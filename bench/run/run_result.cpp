@@ -89,6 +89,7 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const O
     warnings.push_back(fmt::format("detections: {} of {} frames have no recorded boxes and were not masked",
                                    *summary.detector_counters.unrecorded, summary.frames));
   }
+  if (run.depth_finding) warnings.push_back("depth: " + *run.depth_finding);
   if (summary.imu_health.gaps > 0) {
     warnings.push_back(
         fmt::format("imu: {} gap(s) between samples are longer than {} s, over which the motion is not "
