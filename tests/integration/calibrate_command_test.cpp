@@ -71,6 +71,17 @@ TEST(CalibrateCommand, KeepsWhatIsToBeKept) {
   EXPECT_NE(result.out.find("held out"), std::string::npos) << result.out;
 }
 
+TEST(CalibrateCommand, PointsToDiagnoseForAnExtrinsicThatIsFarOff) {
+  const TemporaryFolder folder;
+  const std::string rig =
+      folder.write("rig.toml", "imu = { T_b_c = [0,-1,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1] }\n");
+  const ProgramResult result = run_program(calibrate_with({"--rig", rig}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("far beyond its prior"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("`stillpoint diagnose`"), std::string::npos) << result.out;
+  EXPECT_EQ(run_program(calibrate_with({})).out.find("far beyond its prior"), std::string::npos);
+}
+
 TEST(CalibrateCommand, NeverReplacesAFile) {
   const TemporaryFolder out;
   const fs::path rig = out.path() / "rig.toml";

@@ -46,11 +46,24 @@ std::string_view outcome_name(ParameterOutcome outcome) {
   return kNames[static_cast<std::size_t>(outcome)];
 }
 
+/// A value that no data sheet errs by: the estimate began far from it, where axes or units are wrong.
+bool is_implausible(const ParameterEstimate& parameter) {
+  constexpr double kMaxPriorSigmas = 5.0;
+  return !parameter.name.starts_with("truth") &&
+         std::abs(parameter.difference()) > kMaxPriorSigmas * parameter.prior_sigma;
+}
+
 /// What limits the result; empty if nothing does.
 std::vector<std::string> remarks(const CalibrationSubject& subject, const CalibrationResult& result) {
   std::vector<std::string> lines;
   if (result.interrupted) lines.emplace_back("interrupted: the values are those of the last iteration");
   if (!result.usable) lines.emplace_back("doubtful: the solver failed, or the deviations cannot be computed");
+  if (const auto found = std::ranges::find_if(result.parameters, is_implausible);
+      found != result.parameters.end())
+    lines.push_back(fmt::format(
+        "doubtful: {} is far beyond its prior, as with swapped axes, an inverse T_b_c or another unit; find "
+        "the cause with `stillpoint diagnose`, correct the stated calibration, and calibrate again",
+        found->name));
   if (!subject.has_imu && result.truth_poses == 0)
     lines.emplace_back(
         "without an IMU the scale is that of the depth sensor: the depth scale cannot be observed");
