@@ -228,6 +228,8 @@ std::string worst_html(const bench::StoredRun& run) {
 std::string summary_html(const ReportSubject& subject) {
   std::vector<std::string> sentences = outcome_sentences(subject.runs);
   if (const std::string best = best_sentence(subject.runs); !best.empty()) sentences.push_back(best);
+  if (const std::string unplanned = unplanned_sentence(subject); !unplanned.empty())
+    sentences.push_back(unplanned);
   const bench::StoredRun* const worst = worst_run(subject.runs);
   if (const std::vector<bench::StoredRun> previous = previous_runs(subject); !previous.empty()) {
     const bench::Comparison comparison = bench::compare_runs(previous, subject.runs);

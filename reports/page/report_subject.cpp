@@ -11,6 +11,7 @@
 #include "bench/config/settings.h"
 #include "bench/config/toml_source.h"
 #include "bench/systems/published_table.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
@@ -157,6 +158,15 @@ std::vector<ReportTable> paper_tables(const ReportSubject& subject) {
   return tables;
 }
 
+/// Number of the other runs with a build of the shown ones.
+std::size_t unplanned_runs(const ReportSubject& subject) {
+  std::set<std::pair<std::string, std::string>> builds;  // with their systems
+  for (const bench::StoredRun& run : subject.runs) builds.insert({run.identity.system, run.identity.build});
+  return static_cast<std::size_t>(std::ranges::count_if(subject.other_runs, [&](const bench::StoredRun& run) {
+    return builds.contains({run.identity.system, run.identity.build});
+  }));
+}
+
 }  // namespace
 
 ReportSubject report_subject(const bench::Store& store, const std::string& plan) {
@@ -181,6 +191,7 @@ ReportSubject report_subject(const bench::Store& store, const std::string& plan)
     throw InputError(store.file().string(),
                      "contains no finished runs; create some with `stillpoint bench PLAN --store FILE`");
   subject = with_newest_build(std::move(subject));
+  if (plan.empty()) subject.unplanned = unplanned_runs(subject);
   subject.paper = paper_tables(subject);
   subject.ablations = plan_ablations(subject.plans, subject.runs);
   const NameChanges changes = disambiguate_names(subject.plans, subject.runs);
@@ -191,6 +202,14 @@ ReportSubject report_subject(const bench::Store& store, const std::string& plan)
   subject.runs = std::move(readable.runs);
   subject.gaps = std::move(readable.gaps);
   return subject;
+}
+
+std::string unplanned_sentence(const ReportSubject& subject) {
+  if (subject.unplanned == 0) return "";
+  return counted(subject.unplanned, "run") +
+         " of these builds left out: no plan of the store has them, as after the plan was changed, or "
+         "another "
+         "one of its name was executed.";
 }
 
 std::string plan_argument(const bench::StoredPlan& plan) {

@@ -42,12 +42,17 @@ struct ReportSubject {
   std::vector<std::string> published;        ///< published tables that plans name to compare with
   std::vector<ReportTable> paper;            ///< the paper's tables that plans of the page reproduce
   PlanAblations ablations;                   ///< of `plans`, with the names that each plan uses
+  std::size_t unplanned = 0;                 ///< other runs of the shown builds: see `unplanned_sentence`
 };
 
 /// All plans of the store or a single one; of each plan the runs of the newest build.
 /// @param plan name; empty: all plans, and the runs of systems of which no plan has a run, as imported ones
 /// @throws InputError if the store has no such plan or no finished runs
 [[nodiscard]] ReportSubject report_subject(const bench::Store& store, const std::string& plan);
+
+/// Names the runs that no plan has, as of a plan that another one of the same name has replaced; empty
+/// without one, and on the page of one plan.
+[[nodiscard]] std::string unplanned_sentence(const ReportSubject& subject);
 
 /// What `stillpoint bench` is called with to execute a plan again: its name if the program has this plan,
 /// else "NAME.toml", a file with its stored text.

@@ -57,6 +57,8 @@ int write_report(const ReportArguments& arguments) {
   std::cout << fmt::format("{}; wrote {} ({:.1f} MB) and {} in {}\n", counted(subject.runs.size(), "run"),
                            (out / "index.html").string(), static_cast<double>(page.size()) / 1e6,
                            counted(tables.size(), "file"), (out / "tables").string());
+  if (const std::string unplanned = report::unplanned_sentence(subject); !unplanned.empty())
+    spdlog::info("{}", unplanned);
   for (const std::string& gap : subject.gaps) spdlog::warn("{}; the page lacks their content", gap);
   return subject.gaps.empty() ? kExitOk : kExitFindings;
 }

@@ -147,6 +147,28 @@ TEST(ReportSubject, HasThePublishedTablesThatItsPlansName) {
             std::vector<std::string>{"tum_fr3_ate"});
 }
 
+TEST(ReportSubject, NamesTheRunsThatNoPlanHasAnyMore) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s";
+  const auto plan = [&](const std::string& variant) {
+    bench::StoreWriter(file).record_plan(
+        {.name = "p",
+         .title = "",
+         .text = "",
+         .run_keys = {bench::run_key({.variant = variant, .sequence = "a"})}});
+    return report_subject(bench::Store(file), "");
+  };
+  fill_store(file, {.variant = "vo", .sequence = "a"});
+  EXPECT_EQ(unplanned_sentence(plan("vo")), "");
+  fill_store(file, {.variant = "other", .sequence = "a"});
+  const ReportSubject subject = plan("other");
+  EXPECT_EQ(subject.runs.size(), 1u);
+  EXPECT_EQ(unplanned_sentence(subject).find("1 run of these builds left out"), 0u);
+  EXPECT_NE(report_html(bench::Store(file), subject).find("1 run of these builds left out"),
+            std::string::npos);
+  EXPECT_EQ(unplanned_sentence(report_subject(bench::Store(file), "p")), "");  // of this plan only
+}
+
 TEST(PlanArgument, IsAFileUnlessTheProgramHasThePlan) {
   const std::string text = bench::find_toml("quick", bench::TomlKind::kPlan).text;
   EXPECT_EQ(plan_argument({.name = "quick", .title = "", .text = text, .run_keys = {}}), "quick");
