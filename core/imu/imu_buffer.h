@@ -27,8 +27,8 @@ class ImuBuffer {
   /// at most `max_gap_s` before. For predictions only, not for factors.
   [[nodiscard]] const std::vector<ImuSample>& samples_up_to(Timestamp begin, Timestamp end);
 
-  /// Whether successive samples that cover a part of an interval are more than `max_gap_s` apart: what lies
-  /// between them is missing, or the clock jumped.
+  /// Whether successive samples that cover a part of an interval are more than `max_gap_s`, or 10 ms and 4.5
+  /// mean periods of the buffer apart: what lies between them is missing, or the clock jumped.
   [[nodiscard]] bool has_gap(Timestamp begin, Timestamp end) const;
 
   /// Mean of the samples within `half_width_s` of `t`, or of the largest interval around `t` that the buffer

@@ -87,6 +87,15 @@ TEST(ImuBuffer, HasAGapInEachIntervalThatItTouches) {
   EXPECT_FALSE(buffer.has_gap(at_ms(104), at_ms(137)));
 }
 
+/// Of 20 ms in samples of 200 Hz, as of a clock that jumps; three missing samples are none.
+TEST(ImuBuffer, HasAGapOfFourAndAHalfPeriods) {
+  for (const int missing : {3, 4}) {
+    ImuBuffer buffer(0.05);
+    for (int i = 0; i < 100; ++i) buffer.add(ramp(5.0 * (i < 50 ? i : i + missing)));
+    EXPECT_EQ(buffer.has_gap(at_ms(233), at_ms(267)), missing == 4);
+  }
+}
+
 TEST(ImuBuffer, ExtrapolatesTheNewestSampleToTheEnd) {
   ImuBuffer buffer = filled({0, 10, 20});
   const std::vector<ImuSample> cut = buffer.samples_up_to(at_ms(5), at_ms(60));
