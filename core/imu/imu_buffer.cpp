@@ -6,8 +6,8 @@
 namespace stillpoint {
 namespace {
 
-/// Of `has_gap`. A clock that jumped by 0.02 s misled estimates by up to 0.11 m (room3, an IMU of 200 Hz); the
-/// recordings of EuRoC and TUM-VI at hand have no interval above 1.1 periods.
+/// Of `has_gap`. A clock that jumped by 0.02 s misled estimates by up to 0.11 m (room3, an IMU of 200 Hz). No
+/// interval in the recordings of EuRoC and TUM-VI is longer than 1.1 periods.
 constexpr double kGapPeriods = 4.5;
 constexpr double kMinGap_s = 0.01;
 
