@@ -149,7 +149,9 @@ void Calibration::compare_depth_scale(double step, double variance, Window& wind
   agrees = !observed || contradiction < (agrees ? kOtherScale : kLikeRig);
   if (agrees) window.depth_scale = 1.0;
   depth_scale_found_.reset();
-  if (!agrees) depth_scale_found_ = {window.depth_scale, std::sqrt(variance)};
+  if (agrees) return;
+  depth_scale_found_ = {window.depth_scale, std::sqrt(variance)};
+  depth_scale_confirmed_ = config_.depth.scale_sigma;
 }
 
 void Calibration::window_restarted() {

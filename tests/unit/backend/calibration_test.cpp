@@ -239,6 +239,17 @@ TEST(Calibration, AWindowStartsWithTheDepthScaleAsItWasConfirmedBefore) {
   EXPECT_TRUE(compared.window.agrees_with_rig.depth_scale);
 }
 
+TEST(Calibration, ADepthScaleThatWasFoundIsKeptThoughThatOfTheRigWasConfirmedBefore) {
+  Compared compared;
+  compared.compare(0.0, 0.1, 0.0);
+  compared.compare(0.02, 0.03, 5.0);
+  compared.compare(0.06, 0.02, 15.0);
+  ASSERT_FALSE(compared.window.agrees_with_rig.depth_scale);
+  compared.calibration.window_restarted();
+  compared.compare(0.06, 0.02, 15.1);
+  EXPECT_FALSE(compared.window.agrees_with_rig.depth_scale);
+}
+
 TEST(Calibration, StartsWithAnAlignmentThatContradictsTheRig) {
   BackendConfig config = estimating_config();
   config.initializer.align_rotations = true;
