@@ -184,7 +184,8 @@ void Estimator::preintegrate(WindowFrame& next) {
   const Timestamp begin = after(last.state.t, last.time_offset_s);
   const Timestamp end = after(next.state.t, next.time_offset_s);
   const std::vector<ImuSample>& samples = imu_.samples_up_to(begin, end);
-  const bool reliable = monitor_.inspect(samples, imu_.has_gap(begin, end), end);
+  const bool reliable = monitor_.inspect(
+      {.samples = samples, .end = end, .gap = imu_.gap_in(begin, end), .inertial = window().inertial});
   window_.preintegrate({.samples = samples,
                         .begin = begin,
                         .end = end,

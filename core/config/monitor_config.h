@@ -43,6 +43,7 @@ struct InertialCheckLimits {
   double agreeing_severity = 0.5;
   int agreeing_frames = 6;            ///< below that severity, until the data is used again
   double settling_s = 0.5;            ///< after vision was lost
+  double max_doubt_s = 1.0;           ///< after a gap, without a contradiction
   double after_gap_s = 0.5;           ///< after missing samples the data may be inconsistent
   double after_change_s = 0.3;        ///< same after a change that explains an error
   double min_change_severity = 0.4;   ///< of that error

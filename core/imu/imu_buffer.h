@@ -10,6 +10,13 @@
 
 namespace stillpoint {
 
+/// A step between successive samples that is longer than theirs are: samples are missing, or the clock
+/// jumped.
+struct ImuGap {
+  bool is_long = false;      ///< more than `max_gap_s` and 2.5 T: the motion is not known
+  bool may_be_jump = false;  ///< more than 10 ms and 4.5 T: interpolated, but doubtful
+};
+
 class ImuBuffer {
  public:
   explicit ImuBuffer(double max_gap_s = 0.05) : max_gap_s_(max_gap_s) {}
@@ -27,9 +34,9 @@ class ImuBuffer {
   /// at most `max_gap_s` before. For predictions only, not for factors.
   [[nodiscard]] const std::vector<ImuSample>& samples_up_to(Timestamp begin, Timestamp end);
 
-  /// Whether successive samples that cover a part of an interval are more than `max_gap_s`, or 10 ms and 4.5
-  /// mean periods of the buffer apart: what lies between them is missing, or the clock jumped.
-  [[nodiscard]] bool has_gap(Timestamp begin, Timestamp end) const;
+  /// Of the longest step between successive samples that cover a part of an interval, with the mean period T
+  /// of the buffer.
+  [[nodiscard]] ImuGap gap_in(Timestamp begin, Timestamp end) const;
 
   /// Mean of the samples within `half_width_s` of `t`, or of the largest interval around `t` that the buffer
   /// covers; nullopt if it does not cover `t`.

@@ -79,7 +79,9 @@ TEST(CalibrateCommand, PointsToDiagnoseForAnExtrinsicThatIsFarOff) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("far beyond its prior"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("`stillpoint diagnose`"), std::string::npos) << result.out;
-  EXPECT_EQ(run_program(calibrate_with({})).out.find("far beyond its prior"), std::string::npos);
+  const ProgramResult stated = run_program(calibrate_with({}));
+  ASSERT_EQ(stated.exit_code, 0) << stated.err;
+  EXPECT_EQ(stated.out.find("far beyond its prior"), std::string::npos) << stated.out;
 }
 
 TEST(CalibrateCommand, NeverReplacesAFile) {

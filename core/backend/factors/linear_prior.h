@@ -18,7 +18,7 @@ namespace stillpoint {
 /// inverse depth scale, that of kLens the lens correction, see reprojection_rows.h.
 enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kDepthScale, kLens };
 
-/// The global states, in the order of their columns in the equations of a window.
+/// The global states, in the order of their columns in the reduced equations.
 inline constexpr std::array kGlobalKinds = {BlockKind::kExtrinsics, BlockKind::kGravity,
                                             BlockKind::kTimeOffset, BlockKind::kDepthScale, BlockKind::kLens};
 

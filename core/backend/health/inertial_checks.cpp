@@ -56,9 +56,14 @@ bool InertialCheck::update(const VisualPose& pose, const NavState& state, const 
   const bool gyro_changed =
       has_changed(pose.is_confirmed ? larger : gyro, error->gyro_is_explained(), gyro_changed_at_);
   const bool either = pose.is_confirmed && (accel_changed || gyro_changed);
-  if (is_wrong(accel, accel_changed || either, pose.t) || is_wrong(gyro, gyro_changed || either, pose.t))
+  if (is_wrong(accel, accel_changed || either, pose.t) || is_wrong(gyro, gyro_changed || either, pose.t)) {
     consistent_ = false;
-  if (agreeing_frames_ >= kMonitor.inertial.agreeing_frames && !held_) consistent_ = true;
+    doubted_since_.reset();
+  }
+  if (agreeing_frames_ >= kMonitor.inertial.agreeing_frames && !held_) {
+    consistent_ = true;
+    doubted_since_.reset();
+  }
   return consistent_;
 }
 
@@ -72,8 +77,23 @@ void InertialCheck::interrupt(Timestamp t) {
   resume_at_ = after(t, kMonitor.inertial.settling_s);
 }
 
+void InertialCheck::doubt(Timestamp t) {
+  missing_at_ = t;
+  agreeing_frames_ = 0;
+  if (!consistent_) return;
+  consistent_ = false;
+  doubted_since_ = t;
+}
+
+void InertialCheck::end_old_doubt(Timestamp t) {
+  if (!doubted_since_ || is_recent(doubted_since_, t, kMonitor.inertial.max_doubt_s)) return;
+  doubted_since_.reset();
+  consistent_ = true;
+}
+
 void InertialCheck::contradict() {
   consistent_ = false;
+  doubted_since_.reset();
   agreeing_frames_ = 0;
 }
 
@@ -82,6 +102,7 @@ void InertialCheck::reset() {
   accel_changed_at_.reset();
   gyro_changed_at_.reset();
   poses_.clear();
+  doubted_since_.reset();
   held_ = false;
   consistent_ = true;
   agreeing_frames_ = 0;

@@ -32,12 +32,13 @@ class InertialCheck {
   /// Vision did not locate the frame at `t` on the IMU clock: the poses before it and those of the next 0.5
   /// s, in which the window settles, are not compared.
   void interrupt(Timestamp t);
-  /// Samples were missing at `t` on the IMU clock, or its stamps jumped: those that follow count as
-  /// inconsistent until they agree with vision.
-  void missing(Timestamp t) {
-    missing_at_ = t;
-    contradict();
-  }
+  /// Samples were missing at `t` on the IMU clock.
+  void missing(Timestamp t) { missing_at_ = t; }
+  /// That clock may have jumped before `t`: the data counts as inconsistent until it agrees with vision, or
+  /// for 1 s if nothing contradicts it by then.
+  void doubt(Timestamp t);
+  /// Ends a doubt that began 1 s before `t`.
+  void end_old_doubt(Timestamp t);
   /// The data is wrong for another reason: it counts as inconsistent until it agrees with vision.
   void contradict();
   /// Whether the data stays inconsistent although it agrees.
@@ -57,6 +58,7 @@ class InertialCheck {
   std::vector<VisualPose> poses_;  ///< of the last 0.2 s
   std::optional<Timestamp> resume_at_;
   std::optional<Timestamp> missing_at_;
+  std::optional<Timestamp> doubted_since_;     ///< inconsistent for no other reason than `doubt`
   std::optional<Timestamp> accel_changed_at_;  ///< last change that explained an error
   std::optional<Timestamp> gyro_changed_at_;   ///< same
   bool held_ = false;

@@ -17,11 +17,10 @@ namespace stillpoint {
 /// Recognizes defects that samples show by themselves.
 class SampleInspector {
  public:
-  /// Saturation: in four successive samples, one axis of a sensor has
-  /// exactly the largest magnitude of the run, while another axis varies; or in 30 ms and eight samples
-  /// exactly the same value.
+  /// Saturation: in four successive samples, one axis of a sensor has exactly the largest magnitude of the
+  /// run, while another axis varies; or in 30 ms and eight samples exactly the same value.
   /// @param samples of the next interval, sorted by time; fewer than two are a gap
-  /// @param has_gap see `ImuBuffer::has_gap`
+  /// @param has_gap see `ImuGap::is_long`
   /// @return kNone, kImuGap or kImuSaturated
   [[nodiscard]] StatusReason inspect(std::span<const ImuSample> samples, bool has_gap);
 

@@ -62,9 +62,13 @@ void SensorMonitor::begin_frame(const TrackedFrame& frame, bool bridged) {
   innovations_ = {};
 }
 
-bool SensorMonitor::inspect(std::span<const ImuSample> samples, bool has_gap, Timestamp end) {
-  evidence_.imu_defect = inspector_.inspect(samples, has_gap);
-  if (evidence_.imu_defect == StatusReason::kImuGap) inertial_.missing(end);
+bool SensorMonitor::inspect(const InspectedInterval& interval) {
+  evidence_.imu_defect = inspector_.inspect(interval.samples, interval.gap.is_long);
+  if (evidence_.imu_defect == StatusReason::kImuGap) inertial_.missing(interval.end);
+  inertial_.end_old_doubt(interval.end);
+  const bool continues = interval.samples.size() >= 2;  // else they have not arrived
+  if (interval.gap.may_be_jump && continues && interval.inertial && is_located(status()))
+    inertial_.doubt(interval.end);
   if (evidence_.imu_defect == StatusReason::kNone && !inertial_.is_consistent()) {
     evidence_.imu_defect = StatusReason::kImuInconsistent;
   }

@@ -32,6 +32,14 @@ struct Expectation {
 /// (TrackingMonitor). Wrong inertial data stays in the window with a noise so large that vision determines
 /// the motion; its frames are marked unreliable. The window is changed in this respect, and wrong depths are
 /// removed from it.
+/// Inertial data between two frames.
+struct InspectedInterval {
+  std::span<const ImuSample> samples;
+  Timestamp end;  ///< on the IMU clock
+  ImuGap gap;
+  bool inertial = false;  ///< whether the window is, see Window
+};
+
 class SensorMonitor {
  public:
   /// @param rig  with the configured noise of the IMU
@@ -49,11 +57,11 @@ class SensorMonitor {
   [[nodiscard]] const TrustedMap& map() const { return tracking_.map(); }
   [[nodiscard]] bool awaits_map() const { return tracking_.awaits_map(); }
 
-  /// Inspects the samples up to a frame, before they enter the window.
-  /// @param has_gap see `ImuBuffer::has_gap`
-  /// @param end of the interval, on the IMU clock
+  /// Inspects the samples up to a frame, before they enter the window. Where vision located the frame before,
+  /// those after a gap in the stamps are doubted until they agree with it.
+  /// @param interval samples and what they are of
   /// @return whether they are reliable
-  [[nodiscard]] bool inspect(std::span<const ImuSample> samples, bool has_gap, Timestamp end);
+  [[nodiscard]] bool inspect(const InspectedInterval& interval);
 
   /// Noise, see InertialNoise, with which samples enter the window: so large for unreliable ones that vision
   /// determines the motion.

@@ -233,7 +233,11 @@ TEST(Calibration, AWindowStartsWithTheDepthScaleAsItWasConfirmedBefore) {
   Compared compared;
   compared.compare(0.0, 0.1, 0.0);
   compared.compare(0.005, 0.01, 5.0);
+  const auto prior_information = [&] { return compared.calibration.prior().jacobian.squaredNorm(); };
+  const double before = prior_information();
   compared.calibration.window_restarted();
+  // A calibration leaves 0.006.
+  EXPECT_NEAR(prior_information() - before, 1.0 / (0.01 * 0.01 + 0.006 * 0.006) - 1.0 / (0.1 * 0.1), 1e-3);
   compared.compare(0.3, 0.03, 10.0);
   compared.compare(0.3, 0.03, 20.0);
   EXPECT_TRUE(compared.window.agrees_with_rig.depth_scale);

@@ -183,6 +183,14 @@ TEST(EstimatorFaults, VisualOdometryBeginsANewSegmentInAnUnknownView) {
   EXPECT_EQ(run.count(6.2, kEnd_s, kTracking), run.count(6.2, kEnd_s, is_finite));
 }
 
+/// Before the inertial start there is nothing that data after a gap could be compared with.
+TEST(EstimatorFaults, AGapBeforeTheInertialStartDelaysItOnly) {
+  FaultyScenario scenario;
+  scenario.change_imu = imu_gap(0.1, 0.2);
+  const FaultyRun run = run_with_faults(scenario);
+  EXPECT_GT(run.count(1.0, kBegin_s, kTracking), 80);
+}
+
 TEST(EstimatorFaults, VisionBridgesAGapOfTheImu) {
   for (const double seconds : {0.1, 1.0, 3.0}) {
     FaultyScenario scenario;

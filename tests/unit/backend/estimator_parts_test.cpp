@@ -121,8 +121,8 @@ class SensorMonitorTest : public testing::Test {
 TEST_F(SensorMonitorTest, ReplacesTheNoiseOfMissingSamples) {
   monitor.begin_frame({.t = from_seconds(0.5)}, false);
   const std::vector<ImuSample> samples = SimulatedMotion{}.imu(0.1);
-  EXPECT_TRUE(monitor.inspect(samples, false, samples.back().t));
-  EXPECT_FALSE(monitor.inspect(std::span(samples).first(1), false, samples.back().t));
+  EXPECT_TRUE(monitor.inspect({.samples = samples, .end = samples.back().t}));
+  EXPECT_FALSE(monitor.inspect({.samples = std::span(samples).first(1), .end = samples.back().t}));
   const ImuNoise sensor = SimulatedMotion::rig().imu_noise;
   EXPECT_EQ(monitor.imu_noise(true).accel_noise, sensor.accel_noise);
   EXPECT_GT(monitor.imu_noise(false).accel_noise, 100.0 * sensor.accel_noise);

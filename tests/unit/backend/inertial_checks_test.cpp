@@ -237,9 +237,24 @@ TEST(InertialCheck, DoubtsDataAfterAGapUntilItAgreesWithVision) {
     return check.is_consistent();
   };
   EXPECT_TRUE(update(8));
-  check.missing(at(t));
+  check.doubt(at(t));
   EXPECT_FALSE(update(5));
   EXPECT_TRUE(update(1));
+}
+
+/// A camera at rest, of a low rate or before a crowd is not compared.
+TEST(InertialCheck, ADoubtThatNothingConfirmsEndsAfterASecond) {
+  InertialCheck check;
+  check.doubt(at(1.0));
+  check.doubt(at(1.5));
+  check.end_old_doubt(at(1.99));
+  EXPECT_FALSE(check.is_consistent());
+  check.end_old_doubt(at(2.01));
+  EXPECT_TRUE(check.is_consistent());
+  check.doubt(at(3.0));
+  check.contradict();
+  check.end_old_doubt(at(5.0));
+  EXPECT_FALSE(check.is_consistent());
 }
 
 }  // namespace

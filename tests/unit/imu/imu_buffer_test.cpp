@@ -77,23 +77,32 @@ TEST(ImuBuffer, CountsAGapOnlyOnce) {
 }
 
 /// An interval between two images is shorter than a gap that it lies in.
-TEST(ImuBuffer, HasAGapInEachIntervalThatItTouches) {
-  const ImuBuffer buffer = filled({0, 10, 75, 80, 130});  // 65 ms; 50 ms are none
-  EXPECT_FALSE(buffer.has_gap(at_ms(0), at_ms(10)));
-  EXPECT_TRUE(buffer.has_gap(at_ms(5), at_ms(38)));
-  EXPECT_TRUE(buffer.has_gap(at_ms(38), at_ms(71)));
-  EXPECT_TRUE(buffer.has_gap(at_ms(71), at_ms(104)));
-  EXPECT_FALSE(buffer.has_gap(at_ms(75), at_ms(130)));
-  EXPECT_FALSE(buffer.has_gap(at_ms(104), at_ms(137)));
+TEST(ImuBuffer, AGapIsInEachIntervalThatItTouches) {
+  ImuBuffer buffer(0.05);
+  for (int i = 0; i < 100; ++i) buffer.add(ramp(5.0 * i + (i < 50 ? 0.0 : 60.0)));  // 65 ms after 245
+  for (const double begin : {220.0, 245.0, 270.0, 300.0})
+    EXPECT_TRUE(buffer.gap_in(at_ms(begin), at_ms(begin + 33.0)).is_long);
+  EXPECT_FALSE(buffer.gap_in(at_ms(212), at_ms(245)).is_long);
+  EXPECT_FALSE(buffer.gap_in(at_ms(310), at_ms(343)).is_long);
 }
 
 /// Of 20 ms in samples of 200 Hz, as of a clock that jumps; three missing samples are none.
-TEST(ImuBuffer, HasAGapOfFourAndAHalfPeriods) {
+TEST(ImuBuffer, AStepOfMoreThanFourAndAHalfPeriodsMayBeAJump) {
   for (const int missing : {3, 4}) {
     ImuBuffer buffer(0.05);
     for (int i = 0; i < 100; ++i) buffer.add(ramp(5.0 * (i < 50 ? i : i + missing)));
-    EXPECT_EQ(buffer.has_gap(at_ms(233), at_ms(267)), missing == 4);
+    const ImuGap gap = buffer.gap_in(at_ms(233), at_ms(267));
+    EXPECT_EQ(gap.may_be_jump, missing == 4);
+    EXPECT_FALSE(gap.is_long);
   }
+}
+
+TEST(ImuBuffer, SamplesOfALowRateAndShortBuffersHaveNoGap) {
+  const ImuBuffer slow = filled({0, 100, 200, 300, 400});
+  EXPECT_FALSE(slow.gap_in(at_ms(120), at_ms(153)).is_long);
+  EXPECT_FALSE(slow.gap_in(at_ms(-50), at_ms(50)).is_long);
+  EXPECT_FALSE(filled({}).gap_in(at_ms(0), at_ms(33)).is_long);
+  EXPECT_FALSE(filled({10}).gap_in(at_ms(0), at_ms(33)).may_be_jump);
 }
 
 TEST(ImuBuffer, ExtrapolatesTheNewestSampleToTheEnd) {
