@@ -208,38 +208,39 @@ TEST(InertialCheck, RejectsDataOfBothSensorsIfOldPointsConfirmVision) {
   EXPECT_TRUE(stays_consistent(0.0, 8.0, 0.0, true));
 }
 
-TEST(InertialCheck, AcceptsDataAgainAfterSixFramesOfAgreementUnlessItIsHeld) {
+/// Data and vision of a body at rest, which agree.
+struct AgreeingData {
   ImuBuffer imu = samples_of(0.0, 1.0);
   InertialCheck check;
   double t = 0.0;
-  const auto update = [&](int frames) {
+
+  /// @return whether the data is consistent after that many frames
+  bool update(int frames) {
     for (int i = 0; i < frames; ++i) check.update(pose_of(t += kFrame_s, 0.0, 1.0), {}, kGravity_w, imu);
     return check.is_consistent();
-  };
-  static_cast<void>(update(5));  // three poses at least 50 ms apart are known from the fifth on
-  check.contradict();
-  EXPECT_FALSE(update(5));
-  EXPECT_TRUE(update(1));
-  check.contradict();
-  check.hold(true);
-  EXPECT_FALSE(update(8));
-  check.hold(false);
-  EXPECT_TRUE(update(1));
+  }
+};
+
+TEST(InertialCheck, AcceptsDataAgainAfterSixFramesOfAgreementUnlessItIsHeld) {
+  AgreeingData data;
+  static_cast<void>(data.update(5));  // three poses at least 50 ms apart are known from the fifth on
+  data.check.contradict();
+  EXPECT_FALSE(data.update(5));
+  EXPECT_TRUE(data.update(1));
+  data.check.contradict();
+  data.check.hold(true);
+  EXPECT_FALSE(data.update(8));
+  data.check.hold(false);
+  EXPECT_TRUE(data.update(1));
 }
 
 /// A gap in the stamps may be a jump of the clock.
 TEST(InertialCheck, DoubtsDataAfterAGapUntilItAgreesWithVision) {
-  ImuBuffer imu = samples_of(0.0, 1.0);
-  InertialCheck check;
-  double t = 0.0;
-  const auto update = [&](int frames) {
-    for (int i = 0; i < frames; ++i) check.update(pose_of(t += kFrame_s, 0.0, 1.0), {}, kGravity_w, imu);
-    return check.is_consistent();
-  };
-  EXPECT_TRUE(update(8));
-  check.doubt(at(t));
-  EXPECT_FALSE(update(5));
-  EXPECT_TRUE(update(1));
+  AgreeingData data;
+  EXPECT_TRUE(data.update(8));
+  data.check.doubt(at(data.t));
+  EXPECT_FALSE(data.update(5));
+  EXPECT_TRUE(data.update(1));
 }
 
 /// A camera at rest, of a low rate or before a crowd is not compared.
